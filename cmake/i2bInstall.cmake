@@ -1,0 +1,1 @@
+# Filled by the packaging part: install, export, find_package(i2b).

@@ -1,0 +1,26 @@
+# Language, warnings, sanitizers and the compiler cache; one place for the whole tree.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE RelWithDebInfo CACHE STRING "Build type" FORCE)
+endif()
+# Contraction to fused operations would make results depend on the instruction set.
+set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O2 -g1 -DNDEBUG")
+add_library(i2b_settings INTERFACE)
+target_compile_options(i2b_settings INTERFACE -Wall -Wextra -Wpedantic -Wconversion -ffp-contract=off)
+if(I2B_WARNINGS_AS_ERRORS)
+  target_compile_options(i2b_settings INTERFACE -Werror)
+endif()
+if(I2B_SANITIZE)
+  target_compile_options(i2b_settings INTERFACE -fsanitize=${I2B_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(i2b_settings INTERFACE -fsanitize=${I2B_SANITIZE})
+endif()
+find_program(I2B_CCACHE ccache)
+if(I2B_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER
+      ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${I2B_CCACHE})
+endif()
+# ccache and precompiled headers agree only when the compiler does not look at the header's time stamp.
+add_compile_options(-fpch-preprocess)

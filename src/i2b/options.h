@@ -1,0 +1,77 @@
+// All options of a run: plain aggregates with a default and the unit on every field. They are validated in one
+// place (program/options.cpp, validate()) before any stage sees them.
+#pragma once
+#include "i2b/core/vec.h"
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace i2b {
+
+struct GeometryOptions {
+    std::vector<std::string> files;
+    double scale = 1;                    // file unit to metres
+    double featureAngle = 40;            // degrees; 180: no features
+};
+
+struct PartSize {
+    std::string part;                    // name or regular expression (whole name)
+    double size = 0;                     // m, largest cell that may meet it
+};
+
+struct BoxSize {
+    Box box;                             // m
+    double size = 0;                     // m, largest cell inside
+};
+
+struct SizeOptions {
+    double surface = 0;                  // m, d_int: the largest cell that meets the geometry; the only one required
+    double max = 0;                      // m, d_max: the largest cell anywhere; 0: from the extent
+    double min = 0;                      // m, d_min: the smallest; 0: surface / 2
+    std::vector<PartSize> parts;
+    std::vector<BoxSize> boxes;
+    int bufferCells = 3;                 // cells of each level between the next finer and the next coarser
+};
+
+enum class Flow : std::uint8_t { automatic, external, internal };
+
+struct Seed {
+    std::string name;                    // of the zone; may be empty
+    Vec3 place;                          // m
+};
+
+struct DomainOptions {
+    std::optional<Box> box;              // m; else 10 body lengths around (external) or just around (internal)
+    Flow flow = Flow::automatic;         // automatic: seeds if there are any, else external
+    std::vector<Seed> seeds;
+};
+
+struct FitOptions {
+    double clearance = 0.1;              // cell edges between a kept lattice vertex and the geometry
+    int sweeps = 4;                      // of smoothing and projection
+};
+
+struct LayerOptions {
+    int count = 1;                       // prism layers on every wall face
+    double first = 0;                    // m, height of the one at the wall; 0: from the room and the growth
+    double growth = 1.2;                 // ratio of heights, outwards
+};
+
+struct OutputOptions {
+    std::string folder = "i2b-case";
+    std::vector<std::string> formats{"openfoam", "vtu", "ply", "vdb", "report"};
+    bool ascii = false;                  // polyMesh as text instead of binary
+};
+
+struct Options {
+    GeometryOptions geometry;
+    SizeOptions size;
+    DomainOptions domain;
+    FitOptions fit;
+    LayerOptions layers;
+    OutputOptions output;
+    int threads = 0;                     // 0: all the machine has
+};
+
+} // namespace i2b
