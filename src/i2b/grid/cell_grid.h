@@ -1,7 +1,7 @@
 // The adaptive Cartesian grid as sparse VDB topology: one mask tree of leaf cells per level. A tree node of 8x8x8
 // cells is 64 bytes, so every operation here works on 64 cells a word.
 #pragma once
-#include "i2b/grid/lattice.h"
+#include "i2b/core/lattice.h"
 #include "i2b/grid/vdb.h"
 #include <string>
 #include <vector>

@@ -1,0 +1,18 @@
+// Which cells the geometry meets: an exact, closed triangle/box test in lattice coordinates, borderline cases
+// decided to the safe side, so that a wall never has a pinhole through which paint runs.
+#pragma once
+#include "i2b/geometry/surface.h"
+#include "i2b/grid/cell_grid.h"
+#include "i2b/sizing/size_field.h"
+
+namespace i2b {
+
+// By level: the cells of that level which triangles with that target level meet, whether they exist yet or not.
+std::vector<Mask::Ptr> cutAtTargetLevels(const Surface& surface, const SizeField& field);
+
+// The leaf cells of the grid that any triangle meets. atTarget is what cutAtTargetLevels() gave for the same input;
+// only triangles whose place was refined beyond their own level are looked at again.
+CutCells cutLeafCells(const Surface& surface, const SizeField& field, const CellGrid& grid,
+                      const std::vector<Mask::Ptr>& atTarget);
+
+} // namespace i2b

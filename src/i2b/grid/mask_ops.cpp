@@ -1,0 +1,170 @@
+#include "i2b/grid/mask_ops.h"
+#include "i2b/core/checksum.h"
+
+namespace i2b {
+namespace {
+
+// A second reading of the same tree: probes a leaf and gives its bits, or none.
+struct LeafReader {
+    explicit LeafReader(const Mask& mask) : accessor(mask) {}
+    LeafBits operator()(const openvdb::Coord& origin) { return leafBits(accessor.probeConstLeaf(origin)); }
+    MaskReader accessor;
+};
+
+openvdb::Coord leafOrigin(const openvdb::Coord& c) { return {c.x() & ~7, c.y() & ~7, c.z() & ~7}; }
+
+Mask::Ptr restricted(const Mask& fine, bool any) {
+    auto coarse = std::make_shared<Mask>(false);
+    openvdb::tree::ValueAccessor<Mask> touch(*coarse);
+    for (const MaskLeaf* leaf : leavesOf(fine)) {
+        const openvdb::Coord& o = leaf->origin();
+        touch.touchLeaf(leafOrigin({o.x() >> 1, o.y() >> 1, o.z() >> 1}));
+    }
+    coarse = fillLeaves(coarse, [&] {
+        return [reader = LeafReader(fine), any](const openvdb::Coord& o) mutable {
+            LeafBits r{};
+            for (int i = 0; i < 8; ++i) {
+                const int x = i >> 2, y = i >> 1 & 1, z = i & 1;
+                const LeafBits b = reader(openvdb::Coord(2 * o.x() + 8 * x, 2 * o.y() + 8 * y, 2 * o.z() + 8 * z));
+                if (bits::any(b)) bits::restrictInto(r, b, x, y, z, any);
+            }
+            return r;
+        };
+    });
+    pruneEmptyLeaves(*coarse);
+    return coarse;
+}
+
+// Each cell and the one above it along the axis.
+Mask::Ptr grownUp(const Mask& mask, int axis) {
+    auto grown = std::make_shared<Mask>(false);
+    openvdb::tree::ValueAccessor<Mask> touch(*grown);
+    for (const MaskLeaf* leaf : leavesOf(mask)) {
+        const LeafBits b = leafBits(leaf);
+        touch.touchLeaf(leaf->origin());
+        const LeafBits carry = bits::neighbourDown({}, b, axis);
+        if (bits::any(carry)) {
+            openvdb::Coord next = leaf->origin();
+            next[axis] += 8;
+            touch.touchLeaf(next);
+        }
+    }
+    return fillLeaves(grown, [&] {
+        return [reader = LeafReader(mask), axis](const openvdb::Coord& o) mutable {
+            openvdb::Coord previous = o;
+            previous[axis] -= 8;
+            LeafBits b = reader(o);
+            const LeafBits below = bits::neighbourDown(b, reader(previous), axis);
+            for (std::size_t n = 0; n < 8; ++n) b[n] |= below[n];
+            return b;
+        };
+    });
+}
+
+template <class Combine>
+Mask::Ptr combined(const Mask& a, const Mask& b, const Combine& combine) {
+    auto result = std::make_shared<Mask>(a);
+    result = fillLeaves(result, [&] {
+        return [ra = LeafReader(a), rb = LeafReader(b), &combine](const openvdb::Coord& o) mutable {
+            LeafBits x = ra(o);
+            const LeafBits y = rb(o);
+            for (std::size_t n = 0; n < 8; ++n) x[n] = combine(x[n], y[n]);
+            return x;
+        };
+    });
+    pruneEmptyLeaves(*result);
+    return result;
+}
+
+} // namespace
+
+std::vector<MaskLeaf*> leavesOf(Mask& mask) {
+    std::vector<MaskLeaf*> leaves;
+    leaves.reserve(mask.leafCount());
+    mask.getNodes(leaves);
+    return leaves;
+}
+
+std::vector<const MaskLeaf*> leavesOf(const Mask& mask) {
+    std::vector<const MaskLeaf*> leaves;
+    leaves.reserve(mask.leafCount());
+    mask.getNodes(leaves);
+    return leaves;
+}
+
+void pruneEmptyLeaves(Mask& mask) {
+    std::vector<openvdb::Coord> empty;
+    for (const MaskLeaf* leaf : leavesOf(std::as_const(mask))) {
+        if (leaf->isEmpty()) empty.push_back(leaf->origin());
+    }
+    for (const openvdb::Coord& o : empty) mask.addTile(1, o, false, false);
+}
+
+Mask::Ptr filledBox(const Index3& size) {
+    auto mask = std::make_shared<Mask>(false);
+    mask->denseFill(openvdb::CoordBBox({0, 0, 0}, {size[0] - 1, size[1] - 1, size[2] - 1}), true, true);
+    mask->voxelizeActiveTiles();
+    return mask;
+}
+
+Mask::Ptr parentsOf(const Mask& fine) { return restricted(fine, true); }
+Mask::Ptr evenSamplesOf(const Mask& fine) { return restricted(fine, false); }
+
+Mask::Ptr childrenOf(const Mask& coarse) {
+    auto fine = std::make_shared<Mask>(false);
+    openvdb::tree::ValueAccessor<Mask> touch(*fine);
+    for (const MaskLeaf* leaf : leavesOf(coarse)) {
+        const LeafBits b = leafBits(leaf);
+        const openvdb::Coord& o = leaf->origin();
+        for (int i = 0; i < 8; ++i) {
+            const int x = i >> 2, y = i >> 1 & 1, z = i & 1;
+            if (bits::any(bits::prolong(b, x, y, z))) {
+                touch.touchLeaf(openvdb::Coord(2 * o.x() + 8 * x, 2 * o.y() + 8 * y, 2 * o.z() + 8 * z));
+            }
+        }
+    }
+    return fillLeaves(fine, [&] {
+        return [reader = LeafReader(coarse)](const openvdb::Coord& o) mutable {
+            const openvdb::Coord p(o.x() >> 1, o.y() >> 1, o.z() >> 1);
+            return bits::prolong(reader(leafOrigin(p)), (p.x() & 4) >> 2, (p.y() & 4) >> 2, (p.z() & 4) >> 2);
+        };
+    });
+}
+
+Mask::Ptr cornersOf(const Mask& cells) { return grownUp(*grownUp(*grownUp(cells, 0), 1), 2); }
+
+Mask::Ptr unionOf(const Mask& a, const Mask& b) {
+    auto result = std::make_shared<Mask>(a);
+    result->topologyUnion(b);
+    return result;
+}
+Mask::Ptr differenceOf(const Mask& a, const Mask& b) {
+    return combined(a, b, [](std::uint64_t x, std::uint64_t y) { return x & ~y; });
+}
+Mask::Ptr intersectionOf(const Mask& a, const Mask& b) {
+    return combined(a, b, [](std::uint64_t x, std::uint64_t y) { return x & y; });
+}
+
+Mask::Ptr dilated(const Mask& cells, int n, const Index3& size) {
+    auto result = std::make_shared<Mask>(cells);
+    if (n > 0) {
+        openvdb::tools::dilateActiveValues(*result, n, openvdb::tools::NN_FACE_EDGE_VERTEX,
+                                           openvdb::tools::IGNORE_TILES);
+        result->clip(openvdb::CoordBBox({0, 0, 0}, {size[0] - 1, size[1] - 1, size[2] - 1}));
+        pruneEmptyLeaves(*result);
+    }
+    return result;
+}
+
+std::uint64_t countOf(const Mask& mask) { return mask.activeVoxelCount(); }
+
+void addTo(Checksum& sum, const Mask& mask) {
+    for (const MaskLeaf* leaf : leavesOf(mask)) {
+        const Index3 o = toIndex(leaf->origin());
+        const LeafBits b = leafBits(leaf);
+        sum.bytes(o.data(), sizeof o);
+        sum.bytes(b.data(), sizeof b);
+    }
+}
+
+} // namespace i2b

@@ -1,0 +1,36 @@
+// From the user's few numbers to the lattice and a level for every place. In most cases the user gives one number,
+// the largest cell that may meet the geometry; the rest follows from the extent (Wang and Srinivasan 2002, section 3).
+#pragma once
+#include "i2b/geometry/surface.h"
+#include "i2b/core/lattice.h"
+#include "i2b/options.h"
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace i2b {
+
+struct LevelBox {
+    Box box;           // m
+    std::int32_t level = 0;
+};
+
+struct SizeField {
+    Lattice lattice;
+    std::vector<std::int32_t> partLevel; // per part: level of the cells that it meets
+    std::vector<LevelBox> boxes;         // refinement boxes
+    int bufferCells = 3;
+    double surfaceSize = 0, minSize = 0, maxSize = 0; // m: asked d_int, smallest and largest cell edge that result
+    std::vector<std::string> notes;      // what was clamped
+
+    std::string validate() const;
+};
+
+// Throws Error where no lattice fits the request (empty geometry, box that misses it, more than 2^31 cells along an
+// axis).
+SizeField makeSizeField(const Surface& surface, const SizeOptions& size, const DomainOptions& domain);
+
+// A rough upper estimate of the memory that meshing (or only the grid stages) will take, in bytes.
+double estimateBytes(const Surface& surface, const SizeField& field, int layers, bool gridOnly);
+
+} // namespace i2b
