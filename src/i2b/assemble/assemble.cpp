@@ -1,0 +1,315 @@
+#include "i2b/assemble/assemble.h"
+#include "i2b/core/error.h"
+#include <algorithm>
+#include <fmt/format.h>
+#include <numeric>
+#include <utility>
+
+namespace i2b {
+namespace {
+
+constexpr std::array<const char*, 6> sideNames{"xMin", "xMax", "yMin", "yMax", "zMin", "zMax"};
+
+// Faces and face vertices, counted first, filled after: internal ones, and those of the six domain sides.
+struct Counts {
+    std::array<std::int64_t, 7> faces{}, vertices{}; // 0: internal, 1 + side
+};
+
+// Where the next face of each kind goes.
+struct Cursor {
+    Counts at;
+    PolyMesh* mesh = nullptr;
+
+    void add(std::size_t kind, std::int32_t owner, std::int32_t neighbour, const std::int32_t* points, int n) {
+        const auto f = static_cast<std::size_t>(at.faces[kind]++);
+        auto& v = at.vertices[kind];
+        std::copy_n(points, n, mesh->faceVertices.begin() + v);
+        v += n;
+        mesh->faceOffsets[f + 1] = static_cast<std::uint32_t>(v);
+        mesh->owner[f] = owner;
+        if (kind == 0) mesh->neighbour[f] = neighbour;
+    }
+};
+
+struct Pending { // an internal face waiting to be put in order of its neighbour
+    std::int32_t neighbour = 0;
+    std::uint8_t n = 0;
+    std::array<std::int32_t, 8> points{};
+};
+
+class Assembler {
+  public:
+    explicit Assembler(const AssembleInput& in)
+        : in_(in), layers_(in.layers.count), coreCells_(static_cast<std::int32_t>(in.lattice.cellCount())),
+          corePoints_(static_cast<std::int32_t>(in.lattice.pointCount())),
+          frontFaces_(in.front.ownerCell.size()) {}
+
+    PolyMesh run();
+
+  private:
+    std::int32_t layerCell(std::size_t face, int k) const {
+        return coreCells_ + static_cast<std::int32_t>(face) * layers_ + k;
+    }
+    // k = 0: the front; k = layers: the wall.
+    std::int32_t layerPoint(int vertex, int k) const {
+        return k == 0 ? in_.front.corePoint[static_cast<std::size_t>(vertex)] : corePoints_ + vertex * layers_ + k - 1;
+    }
+    template <class Emit>
+    void coreFaces(int level, std::size_t node, LatticeMesh::Reader& reader, const Emit& emit) const;
+    template <class Emit>
+    void prismFaces(std::size_t face, const Emit& emit) const;
+    void polygon(std::size_t face, int k, Pending& p) const;
+    int sideOf(int u, int w) const;
+    void layOut(PolyMesh& mesh);
+    void fill(PolyMesh& mesh);
+    void wallPatches(PolyMesh& mesh);
+    void cellData(PolyMesh& mesh) const;
+
+    struct Chunk { // of nodes of one level, or of front faces (level -1)
+        int level = -1;
+        std::size_t begin = 0, end = 0;
+        Counts counts;
+    };
+    template <class Emit>
+    void chunkFaces(const Chunk& chunk, const Emit& emit) const;
+
+    const AssembleInput& in_;
+    std::int32_t layers_, coreCells_, corePoints_;
+    std::size_t frontFaces_;
+    std::vector<Chunk> chunks_;
+    std::int64_t sideFaces_ = 0, sideVertices_ = 0; // faces before the walls
+};
+
+void Assembler::polygon(std::size_t face, int k, Pending& p) const {
+    p.n = 0;
+    for (auto v : in_.front.mesh.fv_range(FrontMesh::FaceHandle(static_cast<int>(face)))) p.points[p.n++] = layerPoint(v.idx(), k);
+}
+
+int Assembler::sideOf(int u, int w) const {
+    const int common = in_.front.outside[static_cast<std::size_t>(u)] & in_.front.outside[static_cast<std::size_t>(w)];
+    return std::countr_zero(static_cast<unsigned>(common));
+}
+
+// emit(kind, owner, pending) for every face that a node's cells own.
+template <class Emit>
+void Assembler::coreFaces(int level, std::size_t node, LatticeMesh::Reader& reader, const Emit& emit) const {
+    const RankedMask& cells = in_.lattice.cells(level);
+    const Index3 o = toIndex(cells.leaf(node).origin());
+    auto rank = static_cast<std::int32_t>(cells.leafFirst(node));
+    std::vector<Pending> pending;
+    auto next = static_cast<std::size_t>(
+        std::lower_bound(in_.front.ownerCell.begin(), in_.front.ownerCell.end(), rank) - in_.front.ownerCell.begin());
+    bits::forEach(leafBits(&cells.leaf(node)), [&](int x, int y, int z) {
+        pending.clear();
+        reader.faces(level, {o[0] + x, o[1] + y, o[2] + z}, [&](const CellFace& face) {
+            Pending p{0, face.vertices, face.points};
+            if (face.kind == FaceKind::side) return emit(std::size_t(1) + face.side, rank, p);
+            if (face.kind == FaceKind::internal && face.other < rank) return;
+            p.neighbour = face.kind == FaceKind::internal ? static_cast<std::int32_t>(face.other) : layerCell(next++, 0);
+            pending.push_back(p);
+        });
+        std::sort(pending.begin(), pending.end(), [](const Pending& a, const Pending& b) { return a.neighbour < b.neighbour; });
+        for (const Pending& p : pending) emit(std::size_t(0), rank, p);
+        ++rank;
+    });
+}
+
+template <class Emit>
+void Assembler::prismFaces(std::size_t face, const Emit& emit) const {
+    struct Side { int other, u, w; };
+    std::vector<Side> sides;
+    const FrontMesh& mesh = in_.front.mesh;
+    for (auto he : mesh.fh_range(FrontMesh::FaceHandle(static_cast<int>(face)))) {
+        const auto other = mesh.opposite_face_handle(he);
+        sides.push_back({other.is_valid() ? other.idx() : -1, mesh.from_vertex_handle(he).idx(), mesh.to_vertex_handle(he).idx()});
+    }
+    std::stable_sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.other < b.other; });
+    for (int k = 0; k < layers_; ++k) {
+        Pending p;
+        if (k + 1 < layers_) {
+            polygon(face, k + 1, p);
+            p.neighbour = layerCell(face, k + 1);
+            emit(std::size_t(0), layerCell(face, k), p);
+        }
+        for (const Side& s : sides) {
+            if (s.other >= 0 && s.other < static_cast<int>(face)) continue;
+            p.n = 4;
+            p.points = {layerPoint(s.u, k), layerPoint(s.w, k), layerPoint(s.w, k + 1), layerPoint(s.u, k + 1)};
+            if (s.other < 0) {
+                emit(static_cast<std::size_t>(1 + sideOf(s.u, s.w)), layerCell(face, k), p);
+            } else {
+                p.neighbour = layerCell(static_cast<std::size_t>(s.other), k);
+                emit(std::size_t(0), layerCell(face, k), p);
+            }
+        }
+    }
+}
+
+template <class Emit>
+void Assembler::chunkFaces(const Chunk& chunk, const Emit& emit) const {
+    if (chunk.level < 0) {
+        for (std::size_t f = chunk.begin; f < chunk.end; ++f) prismFaces(f, emit);
+        return;
+    }
+    LatticeMesh::Reader reader(in_.lattice);
+    for (std::size_t node = chunk.begin; node < chunk.end; ++node) coreFaces(chunk.level, node, reader, emit);
+}
+
+// Counts per chunk, then turns them into starting places: internal faces of all chunks, then side by side.
+void Assembler::layOut(PolyMesh& mesh) {
+    for (int l = 0; l < in_.lattice.levels(); ++l) {
+        for (std::size_t n = in_.lattice.cells(l).leafCount(), b = 0; b < n; b += 16) chunks_.push_back({l, b, std::min(n, b + 16), {}});
+    }
+    for (std::size_t b = 0; b < frontFaces_; b += 2048) chunks_.push_back({-1, b, std::min(frontFaces_, b + 2048), {}});
+    parallelFor(chunks_.size(), [&](std::size_t c) {
+        Counts& counts = chunks_[c].counts;
+        chunkFaces(chunks_[c], [&](std::size_t kind, std::int32_t, const Pending& p) {
+            ++counts.faces[kind];
+            counts.vertices[kind] += p.n;
+        });
+    }, 1);
+    std::int64_t faces = 0, vertices = 0;
+    for (std::size_t kind = 0; kind < 7; ++kind) {
+        const std::int64_t start = faces;
+        for (Chunk& chunk : chunks_) {
+            faces += std::exchange(chunk.counts.faces[kind], faces);
+            vertices += std::exchange(chunk.counts.vertices[kind], vertices);
+        }
+        if (kind == 0) {
+            mesh.neighbour.resize(static_cast<std::size_t>(faces));
+        } else if (faces > start) {
+            mesh.patches.push_back({sideNames[kind - 1], "patch", static_cast<std::int32_t>(start),
+                                    static_cast<std::int32_t>(faces - start)});
+        }
+    }
+    std::int64_t wall = vertices;
+    for (std::size_t f = 0; f < frontFaces_; ++f) wall += in_.front.mesh.valence(FrontMesh::FaceHandle(static_cast<int>(f)));
+    sideFaces_ = faces;
+    sideVertices_ = vertices;
+    if (wall >= std::numeric_limits<std::int32_t>::max()) {
+        throw Error(ErrorKind::input, fmt::format("{} faces are more than a mesh of 32-bit labels can hold", faces), "",
+                    "give a larger --size");
+    }
+    const auto all = static_cast<std::size_t>(faces) + frontFaces_;
+    mesh.faceOffsets.resize(all + 1);
+    mesh.owner.resize(all);
+    mesh.faceVertices.resize(static_cast<std::size_t>(wall));
+}
+
+void Assembler::fill(PolyMesh& mesh) {
+    parallelFor(
+        chunks_.size(),
+        [&](std::size_t c) {
+            Cursor cursor{chunks_[c].counts, &mesh};
+            chunkFaces(chunks_[c], [&](std::size_t kind, std::int32_t owner, const Pending& p) {
+                cursor.add(kind, owner, p.neighbour, p.points.data(), p.n);
+            });
+        },
+        1);
+}
+
+// Wall faces part by part, each in the order of the front.
+void Assembler::wallPatches(PolyMesh& mesh) {
+    std::vector<std::int32_t> order(frontFaces_);
+    std::iota(order.begin(), order.end(), 0);
+    const auto partOf = [&](std::int32_t f) { return in_.front.part[static_cast<std::size_t>(f)]; };
+    std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) { return partOf(a) < partOf(b); });
+    std::int64_t f = sideFaces_, v = sideVertices_;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const std::int32_t part = partOf(order[i]);
+        if (i == 0 || part != partOf(order[i - 1])) {
+            mesh.patches.push_back({in_.parts[static_cast<std::size_t>(part)].name, "wall", static_cast<std::int32_t>(f), 0});
+        }
+        ++mesh.patches.back().count;
+        Pending p;
+        polygon(static_cast<std::size_t>(order[i]), layers_, p);
+        std::copy_n(p.points.begin(), p.n, mesh.faceVertices.begin() + v);
+        v += p.n;
+        mesh.faceOffsets[static_cast<std::size_t>(f) + 1] = static_cast<std::uint32_t>(v);
+        mesh.owner[static_cast<std::size_t>(f++)] = layerCell(static_cast<std::size_t>(order[i]), layers_ - 1);
+    }
+}
+
+void Assembler::cellData(PolyMesh& mesh) const {
+    const auto cells = static_cast<std::size_t>(mesh.cells);
+    mesh.cellLevel.resize(cells);
+    mesh.cellLayer.assign(cells, 0);
+    for (int l = 0; l < in_.lattice.levels(); ++l) {
+        in_.lattice.cells(l).forEach([&](std::int64_t rank, const Index3&) { mesh.cellLevel[std::size_t(rank)] = static_cast<std::uint8_t>(l); });
+    }
+    const bool zoned = !in_.kept.zones.empty();
+    if (zoned) {
+        mesh.cellRegion.assign(cells, 0);
+        for (std::size_t z = 0; z < in_.kept.zones.size(); ++z) {
+            for (int l = 0; l < in_.lattice.levels(); ++l) {
+                MaskReader zone(*in_.kept.zones[z][std::size_t(l)]);
+                for (std::size_t n = 0; n < in_.lattice.cells(l).leafCount(); ++n) {
+                    const MaskLeaf& leaf = in_.lattice.cells(l).leaf(n);
+                    const LeafBits mine = leafBits(zone.probeConstLeaf(leaf.origin()));
+                    auto rank = static_cast<std::size_t>(in_.lattice.cells(l).leafFirst(n));
+                    bits::forEach(leafBits(&leaf), [&](int x, int y, int zz) {
+                        if (bits::test(mine, bits::offset(x, y, zz))) mesh.cellRegion[rank] = static_cast<std::int32_t>(z);
+                        ++rank;
+                    });
+                }
+            }
+        }
+    }
+    parallelFor(frontFaces_, [&](std::size_t f) {
+        const auto owner = static_cast<std::size_t>(in_.front.ownerCell[f]);
+        for (int k = 0; k < layers_; ++k) {
+            const auto c = static_cast<std::size_t>(layerCell(f, k));
+            mesh.cellLevel[c] = in_.front.level[f];
+            mesh.cellLayer[c] = static_cast<std::uint8_t>(std::min(255, layers_ - k));
+            if (zoned) mesh.cellRegion[c] = mesh.cellRegion[owner];
+        }
+    });
+    if (!zoned) return;
+    for (const std::string& name : in_.kept.zoneNames) mesh.zones.push_back({name, {}});
+    for (std::int32_t c = 0; c < mesh.cells; ++c) mesh.zones[static_cast<std::size_t>(mesh.cellRegion[static_cast<std::size_t>(c)])].cells.push_back(c);
+}
+
+PolyMesh Assembler::run() {
+    const double cells = double(coreCells_) + double(frontFaces_) * layers_;
+    const double points = double(corePoints_) + double(in_.front.front.size()) * layers_;
+    if (std::max(cells, points) >= 2147483647.0) {
+        throw Error(ErrorKind::input, fmt::format("{:.0f} cells are more than a mesh of 32-bit labels can hold", cells), "",
+                    "give a larger --size or fewer --layers");
+    }
+    PolyMesh mesh;
+    mesh.cells = static_cast<std::int32_t>(cells);
+    layOut(mesh);
+    fill(mesh);
+    wallPatches(mesh);
+    placePoints(in_, mesh.points);
+    cellData(mesh);
+    return mesh;
+}
+
+} // namespace
+
+PolyMesh assemble(const AssembleInput& input) { return Assembler(input).run(); }
+
+void placePoints(const AssembleInput& in, std::vector<Vec3>& points) {
+    if (points.empty()) {
+        points = in.lattice.latticePoints();
+    }
+    const auto core = static_cast<std::size_t>(in.lattice.pointCount());
+    const auto n = static_cast<std::size_t>(in.layers.count);
+    points.resize(core + in.front.front.size() * n);
+    parallelFor(in.front.movedPoints.size(), [&](std::size_t i) {
+        points[static_cast<std::size_t>(in.front.movedPoints[i])] = in.front.movedTo[i];
+    });
+    parallelFor(in.front.front.size(), [&](std::size_t v) {
+        const Vec3 f = in.front.front[v];
+        const auto& p = in.front.mesh.point(FrontMesh::VertexHandle(static_cast<int>(v)));
+        const Vec3 b{p[0], p[1], p[2]};
+        points[static_cast<std::size_t>(in.front.corePoint[v])] = f; // fans that share it agree on its place
+        for (std::size_t k = 0; k < n; ++k) {
+            const double t = k + 1 == n ? 1.0 : static_cast<double>(in.layers.fraction(v, static_cast<int>(k)));
+            points[core + v * n + k] = t == 1.0 ? b : f + (b - f) * t;
+        }
+    });
+}
+
+} // namespace i2b

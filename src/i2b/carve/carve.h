@@ -1,0 +1,16 @@
+// From painted cells to cells whose front can be extruded: cells too close to the wall go (Wang and Srinivasan 2002,
+// section 3, with a clearance found by study), then cells around vertices whose fans have no common direction, then
+// islands that this has cut off.
+#pragma once
+#include "i2b/carve/kept_cells.h"
+#include "i2b/geometry/surface_index.h"
+#include "i2b/options.h"
+#include "i2b/paint/regions.h"
+
+namespace i2b {
+
+// Throws Error where nothing of a painted region is left.
+KeptCells carve(const CellGrid& grid, const CutCells& cut, const Regions& regions, const SurfaceIndex& index,
+                const FitOptions& options);
+
+} // namespace i2b

@@ -1,0 +1,142 @@
+#include "i2b/front/front.h"
+#include "i2b/core/checksum.h"
+#include "i2b/core/error.h"
+#include <fmt/format.h>
+
+namespace i2b {
+namespace {
+
+struct FacePiece { // the front faces of one node's cells
+    std::vector<std::int32_t> owner, fans;
+    std::vector<std::uint8_t> size, level;
+};
+
+void collectFaces(const LatticeMesh& mesh, int level, std::size_t node, LatticeMesh::Reader& reader, FacePiece& out) {
+    const RankedMask& cells = mesh.cells(level);
+    const Index3 o = toIndex(cells.leaf(node).origin());
+    auto rank = static_cast<std::int32_t>(cells.leafFirst(node));
+    bits::forEach(leafBits(&cells.leaf(node)), [&](int x, int y, int z) {
+        reader.faces(level, {o[0] + x, o[1] + y, o[2] + z}, [&](const CellFace& face) {
+            if (face.kind != FaceKind::front) return;
+            out.owner.push_back(rank);
+            out.size.push_back(face.vertices);
+            out.level.push_back(face.level);
+            out.fans.insert(out.fans.end(), face.fans.begin(), face.fans.begin() + face.vertices);
+        });
+        ++rank;
+    });
+}
+
+void addVertices(Front& front, const LatticeMesh& mesh, double thickness) {
+    const auto n = static_cast<std::size_t>(mesh.fanCount());
+    front.front.resize(n), front.corePoint.resize(n), front.h.resize(n), front.direction.resize(n), front.outside.resize(n);
+    for (int l = 0; l < mesh.levels(); ++l) {
+        mesh.frontPoints(l).forEach([&](std::int64_t slot, const Index3& v) {
+            const LatticeMesh::FrontPoint& p = mesh.frontPoint(slot);
+            const VertexPattern& pattern = vertexPattern(p.pattern);
+            for (std::size_t f = 0; f < pattern.fans; ++f) {
+                const std::size_t i = static_cast<std::size_t>(p.firstFan) + f;
+                const std::uint8_t component = pattern.fanComponent[f];
+                front.front[i] = mesh.lattice().corner(l, v);
+                front.corePoint[i] = component == 0 ? p.point : p.firstExtra + component - 1;
+                front.h[i] = mesh.lattice().h(l);
+                front.direction[i] = pattern.direction[f];
+                front.outside[i] = p.outside;
+            }
+        });
+    }
+    front.mesh.reserve(n, 2 * n + 16, n + 16);
+    for (std::size_t i = 0; i < n; ++i) {
+        const Vec3 d{double(front.direction[i][0]), double(front.direction[i][1]), double(front.direction[i][2])};
+        const Vec3 b = front.front[i] + d * (thickness * front.h[i]);
+        front.mesh.add_vertex({b.x, b.y, b.z});
+    }
+}
+
+} // namespace
+
+Front buildFront(const LatticeMesh& mesh, double thickness) {
+    Front front;
+    addVertices(front, mesh, thickness);
+    std::vector<FrontMesh::VertexHandle> polygon;
+    for (int l = 0; l < mesh.levels(); ++l) {
+        constexpr std::size_t chunk = 32;
+        const std::size_t nodes = mesh.cells(l).leafCount();
+        std::vector<FacePiece> pieces((nodes + chunk - 1) / chunk);
+        parallelChunks(nodes, chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+            LatticeMesh::Reader reader(mesh);
+            for (std::size_t node = begin; node < end; ++node) collectFaces(mesh, l, node, reader, pieces[c]);
+        });
+        for (const FacePiece& piece : pieces) {
+            const std::int32_t* fan = piece.fans.data();
+            for (std::size_t i = 0; i < piece.owner.size(); ++i) {
+                polygon.clear();
+                for (int k = 0; k < piece.size[i]; ++k) polygon.emplace_back(*fan++);
+                if (!front.mesh.add_face(polygon).is_valid()) {
+                    const Vec3 p = front.front[static_cast<std::size_t>(polygon[0].idx())];
+                    throw Error(ErrorKind::internal, "the front is not manifold",
+                                fmt::format("({:g} {:g} {:g})", p.x, p.y, p.z), "please report the case");
+                }
+                front.ownerCell.push_back(piece.owner[i]);
+                front.level.push_back(piece.level[i]);
+            }
+        }
+    }
+    front.part.assign(front.ownerCell.size(), 0);
+    return front;
+}
+
+void assignParts(Front& front, const SurfaceIndex& index) {
+    parallelFor(front.ownerCell.size(), [&](std::size_t f) {
+        Vec3 centre;
+        double n = 0;
+        for (auto v : front.mesh.fv_range(FrontMesh::FaceHandle(static_cast<int>(f)))) {
+            const auto& p = front.mesh.point(v);
+            centre += {p[0], p[1], p[2]};
+            n += 1;
+        }
+        const ClosestPoint hit = index.closest(centre / n);
+        if (hit) front.part[f] = index.surface().partOf[hit.triangle];
+    });
+}
+
+std::string Front::validate() const {
+    const std::size_t n = mesh.n_vertices(), m = mesh.n_faces();
+    if (front.size() != n || corePoint.size() != n || h.size() != n || direction.size() != n || outside.size() != n) {
+        return "arrays per vertex differ in length";
+    }
+    if (ownerCell.size() != m || part.size() != m || level.size() != m) return "arrays per face differ in length";
+    for (auto v : mesh.vertices()) {
+        if (mesh.is_isolated(v)) return fmt::format("vertex {} has no face", v.idx());
+    }
+    for (auto e : mesh.edges()) {
+        if (!mesh.is_boundary(e)) continue;
+        const auto he = mesh.halfedge_handle(e, 0);
+        const auto a = static_cast<std::size_t>(mesh.from_vertex_handle(he).idx());
+        const auto b = static_cast<std::size_t>(mesh.to_vertex_handle(he).idx());
+        if ((outside[a] & outside[b]) == 0) {
+            const Vec3& p = front[a];
+            return fmt::format("open edge away from the domain's sides at ({} {} {})", p.x, p.y, p.z);
+        }
+    }
+    for (std::size_t f = 1; f < m; ++f) {
+        if (ownerCell[f] < ownerCell[f - 1]) return "faces are not ordered by owner cell";
+    }
+    return "";
+}
+
+std::uint64_t Front::checksum() const {
+    Checksum sum;
+    sum.add(std::span<const Vec3>(front));
+    sum.add(std::span<const std::int32_t>(ownerCell));
+    sum.add(std::span<const std::int32_t>(part));
+    sum.add(std::span<const std::int32_t>(movedPoints));
+    sum.add(std::span<const Vec3>(movedTo));
+    for (auto v : mesh.vertices()) {
+        const auto& p = mesh.point(v);
+        sum.bytes(&p, sizeof p);
+    }
+    return sum.value();
+}
+
+} // namespace i2b

@@ -1,0 +1,47 @@
+// The front: the faces between kept and removed cells, as an OpenMesh polygon mesh. Each of its vertices stands for
+// two points: one on the front (a corner of kept cells) and one on the wall; each face is the footprint of a prism
+// between the two.
+//
+//      kept cells   | f0 ---- f1 |      front positions, Front::front
+//                   |  |      |  |      one prism a face, later subdivided into layers
+//      geometry  ~~~~ b0 ---- b1 ~~~~   wall positions, the mesh's points
+#pragma once
+#include "i2b/core/vec.h"
+#include "i2b/front/lattice_mesh.h"
+#include "i2b/geometry/surface_index.h"
+#include "i2b/front/front_mesh.h"
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace i2b {
+
+struct Front {
+    FrontMesh mesh;                                // vertices in fan order, face normals out of the kept cells
+    // Per vertex:
+    std::vector<Vec3> front;                       // m, position on the front
+    std::vector<std::int32_t> corePoint;           // number of that point in the LatticeMesh; two fans may share it
+    std::vector<double> h;                         // m, edge of the finest cell around
+    std::vector<std::array<std::int8_t, 3>> direction; // sum of the distinct axis directions of its faces
+    std::vector<std::uint8_t> outside;             // bit 2 * axis (+ 1): lies on the low (high) side of the domain box
+    // Per face:
+    std::vector<std::int32_t> ownerCell;           // core cell number, ascending
+    std::vector<std::int32_t> part;                // of the geometry behind it
+    std::vector<std::uint8_t> level;               // lattice level: its size
+    // Core points behind the front that the fit has moved, by number.
+    std::vector<std::int32_t> movedPoints;
+    std::vector<Vec3> movedTo;                     // m
+
+    // "" or the first fault: open edges away from the domain's sides, isolated vertices, sizes of arrays.
+    std::string validate() const;
+    std::uint64_t checksum() const;
+};
+
+// Wall positions start at front + thickness * h * direction, where every prism is valid by construction.
+Front buildFront(const LatticeMesh& mesh, double thickness);
+
+// The part nearest to each face's wall centre.
+void assignParts(Front& front, const SurfaceIndex& index);
+
+} // namespace i2b

@@ -1,0 +1,97 @@
+// The conforming polyhedral mesh that kept cells make, without storing it: numbers for cells, points and fans from
+// ranked masks (bits per cell), and the polygons of any cell on request.
+//
+// Where a coarse cell meets finer ones its face is the set of the finer faces, and every polygon carries the vertex on
+// the middle of its edge wherever any cell has a corner there. A lattice vertex whose kept cells fall into several
+// face-connected components is one point per component.
+#pragma once
+#include "i2b/carve/kept_cells.h"
+#include "i2b/carve/vertex_patterns.h"
+#include "i2b/grid/ranked_mask.h"
+
+namespace i2b {
+
+enum class FaceKind : std::uint8_t { internal, front, side };
+
+// A face of a kept cell, seen from it: the polygon's normal points out of the cell.
+struct CellFace {
+    FaceKind kind = FaceKind::internal;
+    std::uint8_t side = 0;                // domain side 2 * axis (+ 1 for the high one), where kind is side
+    std::uint8_t level = 0;               // of the smaller of the two cells: the face's size
+    std::uint8_t vertices = 0;            // 4 to 8
+    std::int64_t other = -1;              // cell number across, where kind is internal
+    std::array<std::int32_t, 8> points{}; // core point numbers
+    std::array<std::int32_t, 8> fans{};   // front vertex numbers, where kind is front
+};
+
+class LatticeMesh {
+  public:
+    // Keeps references: grid and kept must outlive it. Throws Error(input) beyond 2^31 points or cells.
+    LatticeMesh(const CellGrid& grid, const KeptCells& kept);
+
+    const Lattice& lattice() const { return grid_.lattice; }
+    int levels() const { return static_cast<int>(cells_.size()); }
+    std::int64_t cellCount() const { return cellCount_; }
+    std::int64_t pointCount() const { return pointCount_ + extraPoints_; } // core points
+    std::int64_t fanCount() const { return fanCount_; }
+    const RankedMask& cells(int level) const { return cells_[static_cast<std::size_t>(level)]; }
+    const RankedMask& points(int level) const { return points_[static_cast<std::size_t>(level)]; }
+    const RankedMask& frontPoints(int level) const { return frontPoints_[static_cast<std::size_t>(level)]; }
+
+    struct FrontPoint {                // one lattice vertex of the front
+        std::uint8_t pattern = 0, outside = 0;
+        std::int32_t firstFan = 0;     // its fans are firstFan, firstFan + 1, ...
+        std::int32_t firstExtra = 0;   // number of the point of component 1; component 0 has the vertex' own number
+        std::int32_t point = 0;        // number of the point of component 0
+    };
+    const FrontPoint& frontPoint(std::int64_t slot) const { return front_[static_cast<std::size_t>(slot)]; }
+    std::int64_t frontPointCount() const { return static_cast<std::int64_t>(front_.size()); }
+
+    // Positions of all core points on the lattice, m.
+    std::vector<Vec3> latticePoints() const;
+
+    // Cached look-ups: one Reader per thread.
+    class Reader {
+      public:
+        explicit Reader(const LatticeMesh& mesh);
+        // visit(const CellFace&) for every face of the kept cell, in fixed order.
+        template <class Visit>
+        void faces(int level, const Index3& c, const Visit& visit) {
+            for (int direction = 0; direction < 6; ++direction) {
+                const int n = neighbours(level, c, direction);
+                for (int i = 0; i < n; ++i) visit(found_[static_cast<std::size_t>(i)]);
+            }
+        }
+        std::int64_t cell(int level, const Index3& c) { return kept_[std::size_t(level)].rank(c); }
+        // Kept cells around a vertex (given on its own level): calls visit(level, cell) up to eight times, with repeats.
+        template <class Visit>
+        void cellsAround(int level, const Index3& v, const Visit& visit) {
+            for (int o = 0; o < 8; ++o) {
+                const Index3 c{v[0] - 1 + (o & 1), v[1] - 1 + (o >> 1 & 1), v[2] - 1 + (o >> 2)};
+                if (c[0] < 0 || c[1] < 0 || c[2] < 0) continue;
+                if (kept_[std::size_t(level)].has(c)) {
+                    visit(level, c);
+                } else if (level > 0 && kept_[std::size_t(level) - 1].has({c[0] >> 1, c[1] >> 1, c[2] >> 1})) {
+                    visit(level - 1, Index3{c[0] >> 1, c[1] >> 1, c[2] >> 1});
+                }
+            }
+        }
+
+      private:
+        int neighbours(int level, const Index3& c, int direction); // fills found_
+        void fill(CellFace& face, int faceLevel, const Index3& low, int axis, int side);
+        void addVertex(CellFace& face, int level, const Index3& v, int faceLevel, const Index3& low, int axis, int side);
+        const LatticeMesh& mesh_;
+        std::vector<RankedMask::Reader> kept_, points_, frontPoints_;
+        std::vector<MaskReader> cells_;
+        std::array<CellFace, 4> found_{};
+    };
+
+  private:
+    const CellGrid& grid_;
+    std::vector<RankedMask> cells_, points_, frontPoints_;
+    std::vector<FrontPoint> front_;
+    std::int64_t cellCount_ = 0, pointCount_ = 0, extraPoints_ = 0, fanCount_ = 0;
+};
+
+} // namespace i2b
