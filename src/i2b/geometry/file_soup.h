@@ -1,0 +1,52 @@
+// What one file gives, before names are settled and files are joined; private to the readers.
+#pragma once
+#include "i2b/geometry/mapped_file.h"
+#include "i2b/geometry/read.h"
+#include "i2b/geometry/surface.h"
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace i2b {
+
+struct FileSoup {
+    Surface surface; // in metres; parts carry the names as the file has them, no part is empty
+    GeometryNotes notes;
+};
+
+// A solid begins at a triangle and a point of its piece. file order.
+struct SolidStart {
+    std::uint64_t triangle = 0, point = 0;
+    std::string name;
+};
+
+// A stretch of an STL file, read by one thread.
+struct StlPiece {
+    std::vector<Vec3> points;                            // welded within the piece and part
+    std::vector<std::array<std::uint32_t, 3>> triangles; // into points
+    std::vector<SolidStart> solids;
+    std::uint64_t notNumbers = 0, coincident = 0, zeroArea = 0;
+    std::uint64_t firstNotNumber = ~std::uint64_t{0}; // byte in the file
+    std::uint64_t faultAt = ~std::uint64_t{0};        // byte in the file
+    std::string fault;                                // what is wrong there; empty: nothing
+    bool endsSolid = false;
+};
+
+// How a triangle is taken; see GeometryNotes.
+enum class TriangleKind { good, zeroArea, coincident, notNumber };
+TriangleKind kindOf(const Vec3& a, const Vec3& b, const Vec3& c);
+
+FileSoup readStlBinary(const MappedFile& file, double scale);
+FileSoup readStlAscii(const MappedFile& file, double scale);
+FileSoup readObj(const MappedFile& file, double scale);
+
+// Concatenates pieces in order, gives triangles their part and welds. Frees the pieces as it goes.
+FileSoup joinPieces(const MappedFile& file, std::vector<StlPiece>& pieces);
+
+bool looksLikeAsciiStl(std::string_view bytes);
+bool looksLikeBinaryStl(std::string_view bytes); // the header's count fits the size exactly
+bool looksLikeObj(std::string_view bytes);
+
+} // namespace i2b
