@@ -1,0 +1,210 @@
+#include "i2b/write/foam_scan.h"
+#include "i2b/core/error.h"
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <fmt/format.h>
+#include <limits>
+
+namespace i2b {
+namespace {
+
+bool isSpace(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+bool isPunctuation(char c) { return c == '(' || c == ')' || c == '{' || c == '}' || c == ';'; }
+
+template <class T> T load(const char* from) {
+    T value;
+    std::memcpy(&value, from, sizeof value);
+    return value;
+}
+
+int sizeAfter(std::string_view arch, std::string_view key, int otherwise) {
+    const std::size_t at = arch.find(key);
+    if (at == std::string_view::npos) return otherwise;
+    return arch.substr(at + key.size(), 2) == "64" ? 8 : 4;
+}
+
+} // namespace
+
+FoamScanner::FoamScanner(const MappedFile& file) : file_(file), text_(file.bytes()) { readHeader(); }
+
+void FoamScanner::fail(const std::string& what) const {
+    const auto lines = std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(std::min(at_, text_.size())), '\n');
+    const std::string where = header_.binary ? fmt::format("{}, byte {}", file_.path(), at_)
+                                             : fmt::format("{}, line {}", file_.path(), lines + 1);
+    throw Error(ErrorKind::input, what, where, "write the mesh again, or convert it with foamFormatConvert");
+}
+
+void FoamScanner::skipSpace() {
+    while (at_ < text_.size()) {
+        if (isSpace(text_[at_])) {
+            ++at_;
+        } else if (text_.substr(at_, 2) == "//") {
+            at_ = std::min(text_.find('\n', at_), text_.size());
+        } else if (text_.substr(at_, 2) == "/*") {
+            const std::size_t end = text_.find("*/", at_ + 2);
+            if (end == std::string_view::npos) fail("a comment has no end");
+            at_ = end + 2;
+        } else {
+            return;
+        }
+    }
+}
+
+std::string_view FoamScanner::peek() {
+    const std::size_t before = at_;
+    skipSpace();
+    const std::size_t begin = at_;
+    at_ = before;
+    if (begin == text_.size()) return {};
+    std::size_t end = begin + 1;
+    if (text_[begin] == '"') {
+        while (end < text_.size() && text_[end] != '"') ++end;
+        return text_.substr(begin, std::min(end + 1, text_.size()) - begin);
+    }
+    if (!isPunctuation(text_[begin]))
+        while (end < text_.size() && !isSpace(text_[end]) && !isPunctuation(text_[end]) && text_[end] != '"') ++end;
+    return text_.substr(begin, end - begin);
+}
+
+std::string_view FoamScanner::next() {
+    const std::string_view token = peek();
+    if (token.empty()) at_ = text_.size(), fail("the file ends too early");
+    at_ = static_cast<std::size_t>(token.data() - text_.data()) + token.size();
+    return token;
+}
+
+void FoamScanner::expect(std::string_view token) {
+    const std::string_view found = peek();
+    if (found != token) fail(fmt::format("'{}' expected, but found '{}'", token, found.substr(0, 20)));
+    next();
+}
+
+void FoamScanner::readHeader() {
+    expect("FoamFile");
+    expect("{");
+    while (peek() != "}") {
+        const std::string_view key = next();
+        std::string_view value;
+        while (peek() != ";") value = next();
+        expect(";");
+        if (key == "format") header_.binary = value == "binary";
+        if (key == "class") header_.type = std::string(value);
+        if (key == "arch") {
+            header_.labelBytes = sizeAfter(value, "label=", 4);
+            header_.scalarBytes = sizeAfter(value, "scalar=", 8);
+        }
+    }
+    expect("}");
+}
+
+std::int64_t FoamScanner::integer() {
+    const std::string_view token = peek();
+    std::int64_t value = 0;
+    const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
+    if (token.empty() || error != std::errc() || end != token.data() + token.size())
+        fail(fmt::format("a whole number expected, but found '{}'", token.substr(0, 20)));
+    next();
+    return value;
+}
+
+double FoamScanner::scalar() {
+    const std::string_view token = peek();
+    double value = 0;
+    const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
+    // from_chars reports numbers too small to hold as out of range; they are as good as zero.
+    if (token.empty() || (error != std::errc() && error != std::errc::result_out_of_range) ||
+        end != token.data() + token.size())
+        fail(fmt::format("a number expected, but found '{}'", token.substr(0, 20)));
+    next();
+    return value;
+}
+
+std::int32_t FoamScanner::checkedLabel(std::int64_t value) const {
+    if (value < -1 || value > std::numeric_limits<std::int32_t>::max())
+        fail(fmt::format("the label {} is out of range", value));
+    return static_cast<std::int32_t>(value);
+}
+
+std::size_t FoamScanner::count(std::size_t leastBytesEach) {
+    const std::int64_t n = integer();
+    // A damaged size must not make us reserve what the file cannot hold.
+    if (n < 0 || n > std::numeric_limits<std::int32_t>::max() ||
+        (peek() != "{" && static_cast<std::uint64_t>(n) * leastBytesEach > text_.size() - at_))
+        fail(fmt::format("a list of {} entries cannot be in this file", n));
+    return static_cast<std::size_t>(n);
+}
+
+std::string_view FoamScanner::raw(std::size_t n, std::size_t size) {
+    if (n == 0) { // written as 0 or 0()
+        if (peek() == "(") next(), expect(")");
+        return {};
+    }
+    expect("(");
+    if (n * size > text_.size() - at_) fail("the file ends within a list");
+    const std::string_view bytes = text_.substr(at_, n * size);
+    at_ += n * size;
+    expect(")");
+    return bytes;
+}
+
+void FoamScanner::appendLabels(std::vector<std::int32_t>& to) {
+    const std::size_t n = count(header_.binary ? std::size_t(header_.labelBytes) : 2);
+    const std::size_t start = to.size();
+    if (peek() == "{") {
+        next();
+        if (header_.binary) fail("a list of equal labels in binary is not supported");
+        to.resize(start + n, checkedLabel(integer()));
+        expect("}");
+    } else if (header_.binary) {
+        const auto size = static_cast<std::size_t>(header_.labelBytes);
+        const std::string_view bytes = raw(n, size);
+        to.resize(start + n);
+        if (size == 4 && n > 0) {
+            std::memcpy(to.data() + start, bytes.data(), n * 4);
+        } else {
+            for (std::size_t i = 0; i < n; ++i) to[start + i] = checkedLabel(load<std::int64_t>(bytes.data() + i * 8));
+        }
+    } else {
+        if (n == 0 && peek() != "(") return;
+        expect("(");
+        to.resize(start + n);
+        for (std::size_t i = 0; i < n; ++i) to[start + i] = checkedLabel(integer());
+        expect(")");
+    }
+}
+
+std::vector<std::int32_t> FoamScanner::labels() {
+    std::vector<std::int32_t> result;
+    appendLabels(result);
+    return result;
+}
+
+std::vector<Vec3> FoamScanner::points() {
+    const auto size = static_cast<std::size_t>(header_.scalarBytes);
+    const std::size_t n = count(header_.binary ? 3 * size : 7);
+    std::vector<Vec3> result(n);
+    if (header_.binary) {
+        const std::string_view bytes = raw(n, 3 * size);
+        static_assert(sizeof(Vec3) == 3 * sizeof(double));
+        if (size == 8 && n > 0) {
+            std::memcpy(static_cast<void*>(result.data()), bytes.data(), bytes.size());
+        } else {
+            for (std::size_t i = 0; i < n; ++i)
+                for (int k = 0; k < 3; ++k)
+                    result[i][k] = load<float>(bytes.data() + (3 * i + static_cast<std::size_t>(k)) * 4);
+        }
+        return result;
+    }
+    if (n == 0 && peek() != "(") return result;
+    expect("(");
+    for (Vec3& p : result) {
+        expect("(");
+        p.x = scalar(), p.y = scalar(), p.z = scalar();
+        expect(")");
+    }
+    expect(")");
+    return result;
+}
+
+} // namespace i2b

@@ -1,0 +1,107 @@
+#include "i2b/write/report_write.h"
+#include "i2b/write/output_file.h"
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace i2b {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json place(const Vec3& p) { return Json::array({number(p.x), number(p.y), number(p.z)}); }
+
+Json qualityJson(const QualityReport& q) {
+    return {{"ok", q.ok()},
+            {"negative_volume_cells", q.negativeVolumeCells},
+            {"wrong_oriented_faces", q.wrongOrientedFaces},
+            {"max_non_orthogonality", number(q.maxNonOrthogonality)},
+            {"mean_non_orthogonality", number(q.meanNonOrthogonality)},
+            {"max_skewness", number(q.maxSkewness)},
+            {"max_aspect_ratio", number(q.maxAspectRatio)},
+            {"min_face_weight", number(q.minFaceWeight)},
+            {"min_volume_ratio", number(q.minVolumeRatio)},
+            {"min_determinant", number(q.minDeterminant)},
+            {"concave_cells", q.concaveCells}};
+}
+
+Json fitJson(const FitReport& f) {
+    return {{"wall_nodes_on_geometry_fraction", number(f.wallNodesOnGeometryFraction)},
+            {"mean_distance_in_h", number(f.meanDistanceInH)},
+            {"max_distance_in_h", number(f.maxDistanceInH)},
+            {"feature_capture_fraction", number(f.featureCaptureFraction)},
+            {"tilted_face_fraction", number(f.tiltedFaceFraction)}};
+}
+
+Json layersJson(const LayerReport& l) {
+    return {{"requested", l.requested},
+            {"mean_count", number(l.meanCount)},
+            {"faces_covered_fraction", number(l.facesCoveredFraction)},
+            {"thickness_fraction", number(l.thicknessFraction)}};
+}
+
+Json regionJson(const Region& r, const std::vector<ReportPart>& parts) {
+    Json touched = Json::array();
+    for (const std::int32_t part : r.parts) {
+        const auto i = static_cast<std::size_t>(part);
+        touched.push_back(part >= 0 && i < parts.size() ? Json(parts[i].name) : Json(part));
+    }
+    return {{"id", r.id},
+            {"name", r.name},
+            {"cells", r.cells},
+            {"volume", number(r.volume)},
+            {"box", Json::array({place(r.box.lo), place(r.box.hi)})},
+            {"touches_domain_box", r.touchesDomainBox},
+            {"painted", r.painted},
+            {"parts", touched},
+            {"seed", place(r.seed)}};
+}
+
+} // namespace
+
+std::string reportText(const RunReport& r) {
+    Json parts = Json::array(), stages = Json::array(), patches = Json::array(), regions = Json::array(),
+         leaks = Json::array();
+    for (const ReportPart& part : r.parts)
+        parts.push_back({{"name", part.name}, {"triangles", part.triangles}});
+    for (const StageRecord& s : r.stages)
+        stages.push_back({{"name", s.name}, {"seconds", number(s.seconds)}, {"items", s.items}});
+    for (const Patch& p : r.patches)
+        patches.push_back({{"name", p.name}, {"type", p.type}, {"faces", p.count}});
+    for (const Region& region : r.regions) regions.push_back(regionJson(region, r.parts));
+    for (const Leak& leak : r.leaks)
+        leaks.push_back({{"place", place(leak.place)}, {"width", number(leak.width)}, {"text", leak.text}});
+
+    Json json;
+    json["program"] = {{"name", r.programName}, {"version", r.programVersion}};
+    json["geometry"] = {{"files", r.files}, {"triangles", r.triangles}, {"parts", parts}};
+    json["threads"] = r.threads;
+    json["sizes"] = {{"surface", number(r.surfaceSize)},
+                     {"min", number(r.minSize)},
+                     {"max", number(r.maxSize)},
+                     {"levels", r.levels}};
+    json["seconds"] = number(r.seconds);
+    json["peak_rss_bytes"] = r.peakRssBytes;
+    json["stages"] = stages;
+    json["cells"] = r.cells;
+    json["faces"] = r.faces;
+    json["points"] = r.points;
+    json["wall_faces"] = r.wallFaces;
+    json["quality"] = r.quality ? qualityJson(*r.quality) : Json(nullptr);
+    json["fit"] = r.fit ? fitJson(*r.fit) : Json(nullptr);
+    json["layers"] = r.layers ? layersJson(*r.layers) : Json(nullptr);
+    json["patches"] = patches;
+    json["regions"] = regions;
+    json["leaks"] = leaks;
+    json["checksum"] = r.checksum;
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void writeReport(const RunReport& report, const std::filesystem::path& path) {
+    OutputFile file(path);
+    file.write(reportText(report));
+    file.close();
+}
+
+} // namespace i2b

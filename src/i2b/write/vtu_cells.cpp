@@ -1,0 +1,181 @@
+#include "i2b/write/vtu_cells.h"
+#include "i2b/core/parallel.h"
+#include <algorithm>
+#include <atomic>
+
+namespace i2b {
+namespace {
+
+using Span = std::span<const std::int32_t>;
+
+bool holds(Span face, std::int32_t v) { return std::find(face.begin(), face.end(), v) != face.end(); }
+
+// The other end of the edge that leaves v in the face and does not lead to `from`; -1 where from-v is no edge
+// of it.
+std::int32_t across(Span face, std::int32_t from, std::int32_t v) {
+    const std::size_t n = face.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        if (face[i] != v) continue;
+        const std::int32_t before = face[(i + n - 1) % n], after = face[(i + 1) % n];
+        if (before == from) return after;
+        if (after == from) return before;
+    }
+    return -1;
+}
+
+// The points above the base polygon: for each edge of it one other face holds that edge and leads up from
+// both its ends. False where these disagree, or a point above is one of the base.
+bool raise(const PolyMesh& mesh, Span cellFaces, std::int32_t base, std::span<const std::int32_t> ring,
+           std::span<std::int32_t> above) {
+    std::fill(above.begin(), above.end(), -1);
+    const std::size_t n = ring.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t j = (i + 1) % n;
+        int found = 0;
+        for (const std::int32_t f : cellFaces) {
+            if (f == base) continue;
+            const Span face = mesh.face(f);
+            const std::int32_t a = across(face, ring[j], ring[i]), b = across(face, ring[i], ring[j]);
+            if (a < 0 || b < 0) continue;
+            ++found;
+            if ((above[i] >= 0 && above[i] != a) || (above[j] >= 0 && above[j] != b)) return false;
+            above[i] = a, above[j] = b;
+        }
+        if (found != 1) return false;
+    }
+    for (const std::int32_t v : above)
+        if (v < 0 || holds(ring, v)) return false;
+    return true;
+}
+
+// Vertices of a face of the cell, seen from inside with the right hand.
+void inward(const PolyMesh& mesh, std::int32_t f, std::int32_t cell, std::span<std::int32_t> out) {
+    const Span face = mesh.face(f);
+    std::copy(face.begin(), face.end(), out.begin());
+    if (mesh.owner[static_cast<std::size_t>(f)] == cell) std::reverse(out.begin() + 1, out.end());
+}
+
+bool allDistinct(std::span<const std::int32_t> points) {
+    for (std::size_t i = 0; i < points.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (points[i] == points[j]) return false;
+    return true;
+}
+
+// True if all faces with n vertices but the base hold only the given points.
+bool closedBy(const PolyMesh& mesh, Span cellFaces, std::int32_t base, std::span<const std::int32_t> points,
+              std::size_t n) {
+    for (const std::int32_t f : cellFaces) {
+        if (f == base || mesh.face(f).size() != n) continue;
+        for (const std::int32_t v : mesh.face(f))
+            if (!holds(points, v)) return false;
+    }
+    return true;
+}
+
+// Prism over a base of n points: hexahedron (n = 4) and wedge (n = 3).
+CellShape prism(const PolyMesh& mesh, Span cellFaces, std::int32_t cell, std::int32_t base, std::size_t n) {
+    CellShape shape;
+    const std::span<std::int32_t> points(shape.points.data(), 2 * n), ring = points.first(n),
+                                                                      above = points.last(n);
+    inward(mesh, base, cell, ring);
+    if (!raise(mesh, cellFaces, base, ring, above) || !allDistinct(points)) return {};
+    if (!closedBy(mesh, cellFaces, base, points, n)) return {};
+    if (n == 3) { // VTK's wedge has its base seen from outside
+        std::swap(shape.points[1], shape.points[2]);
+        std::swap(shape.points[4], shape.points[5]);
+    }
+    shape.type = n == 4 ? VtkCell::hexahedron : VtkCell::wedge;
+    shape.pointCount = 2 * n;
+    return shape;
+}
+
+// Cone over a base of n points: pyramid (n = 4) and tetrahedron (n = 3).
+CellShape cone(const PolyMesh& mesh, Span cellFaces, std::int32_t cell, std::int32_t base, std::size_t n) {
+    CellShape shape;
+    const std::span<std::int32_t> ring(shape.points.data(), n);
+    std::array<std::int32_t, 4> above{};
+    inward(mesh, base, cell, ring);
+    if (!raise(mesh, cellFaces, base, ring, std::span(above).first(n)) || !allDistinct(ring)) return {};
+    if (std::any_of(above.begin(), above.begin() + static_cast<std::ptrdiff_t>(n),
+                    [&](auto v) { return v != above[0]; }))
+        return {};
+    shape.points[n] = above[0];
+    shape.type = n == 4 ? VtkCell::pyramid : VtkCell::tetra;
+    shape.pointCount = n + 1;
+    return shape;
+}
+
+} // namespace
+
+CellFaces buildCellFaces(const PolyMesh& mesh) {
+    const auto cells = static_cast<std::size_t>(mesh.cells);
+    CellFaces result;
+    result.offsets.assign(cells + 1, 0);
+    const auto forSides = [&](const auto& body) {
+        parallelFor(
+            mesh.owner.size(),
+            [&](std::size_t f) {
+                body(static_cast<std::size_t>(mesh.owner[f]), f);
+                if (f < mesh.neighbour.size()) body(static_cast<std::size_t>(mesh.neighbour[f]), f);
+            },
+            4096);
+    };
+    forSides([&](std::size_t c, std::size_t) {
+        std::atomic_ref(result.offsets[c]).fetch_add(1, std::memory_order_relaxed);
+    });
+    result.faces.resize(exclusiveScan(result.offsets));
+    std::vector<std::uint32_t> next(result.offsets.begin(), result.offsets.end());
+    forSides([&](std::size_t c, std::size_t f) {
+        const std::uint32_t at = std::atomic_ref(next[c]).fetch_add(1, std::memory_order_relaxed);
+        result.faces[at] = static_cast<std::int32_t>(f);
+    });
+    // The threads' order of arrival is not ours.
+    parallelFor(
+        cells,
+        [&](std::size_t c) {
+            std::sort(result.faces.begin() + result.offsets[c], result.faces.begin() + result.offsets[c + 1]);
+        },
+        4096);
+    return result;
+}
+
+CellShape shapeOf(const PolyMesh& mesh, std::span<const std::int32_t> cellFaces, std::int32_t cell) {
+    if (cellFaces.size() < 4 || cellFaces.size() > 6) return {};
+    std::size_t triangles = 0, quads = 0;
+    std::int32_t triangle = -1, quad = -1;
+    for (const std::int32_t f : cellFaces) {
+        const std::size_t n = mesh.face(f).size();
+        if (n == 3 && triangles++ == 0) triangle = f;
+        if (n == 4 && quads++ == 0) quad = f;
+        if (n > 4) return {};
+    }
+    if (quads == 6 && triangles == 0) return prism(mesh, cellFaces, cell, quad, 4);
+    if (quads == 3 && triangles == 2) return prism(mesh, cellFaces, cell, triangle, 3);
+    if (quads == 1 && triangles == 4) return cone(mesh, cellFaces, cell, quad, 4);
+    if (quads == 0 && triangles == 4) return cone(mesh, cellFaces, cell, triangle, 3);
+    return {};
+}
+
+void cellPoints(const PolyMesh& mesh, std::span<const std::int32_t> cellFaces,
+                std::vector<std::int32_t>& out) {
+    out.clear();
+    for (const std::int32_t f : cellFaces) out.insert(out.end(), mesh.face(f).begin(), mesh.face(f).end());
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+}
+
+void appendFaceStream(const PolyMesh& mesh, std::span<const std::int32_t> cellFaces, std::int32_t cell,
+                      std::vector<std::int32_t>& out) {
+    out.push_back(static_cast<std::int32_t>(cellFaces.size()));
+    for (const std::int32_t f : cellFaces) {
+        const Span face = mesh.face(f);
+        out.push_back(static_cast<std::int32_t>(face.size()));
+        if (mesh.owner[static_cast<std::size_t>(f)] == cell)
+            out.insert(out.end(), face.begin(), face.end());
+        else
+            out.insert(out.end(), face.rbegin(), face.rend());
+    }
+}
+
+} // namespace i2b

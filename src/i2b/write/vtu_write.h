@@ -1,0 +1,31 @@
+// PolyMesh as a VTK XML unstructured grid: appended raw binary in zlib blocks of fixed size, compressed in
+// parallel. Tetrahedra, pyramids, wedges and hexahedra as such, all other cells as VTK_POLYHEDRON
+// (vtu_cells.h). Points are doubles; indices are 32-bit where they fit. Nothing but the cells' faces is held
+// in memory beside the mesh.
+#pragma once
+#include "i2b/assemble/poly_mesh.h"
+#include "i2b/core/context.h"
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace i2b {
+
+// One value for each cell, e.g. "nonOrthogonality" (degrees), "skewness", "volume" (m^3).
+struct CellData {
+    std::string name;
+    std::vector<float> values; // mesh.cells
+};
+
+struct VtuWriteOptions {
+    bool compress = true;
+    int compression = 1; // 1 fast ... 12 small (libdeflate's levels)
+};
+
+// Cell data written: level, layer, region (where the mesh has them), patch (number of the first wall patch
+// the cell lies at, else -1), then `data`. Throws Error{input} (unwritable, disk full), Error{internal} (data
+// of the wrong length) and Cancelled.
+void writeVtu(const PolyMesh& mesh, const std::vector<CellData>& data, const std::filesystem::path& path,
+              const VtuWriteOptions& options, const Context& context);
+
+} // namespace i2b

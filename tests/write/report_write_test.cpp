@@ -1,0 +1,100 @@
+#include "i2b/write/report_write.h"
+#include "write/mesh_samples.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace i2b {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::vector<std::string> keys(const Json& json) {
+    std::vector<std::string> all;
+    for (const auto& item : json.items()) all.push_back(item.key());
+    return all;
+}
+
+RunReport sample() {
+    RunReport r;
+    r.programVersion = "0.1.0";
+    r.files = {"body.stl"};
+    r.triangles = 12;
+    r.parts = {{"body", 12}};
+    r.threads = 2;
+    r.surfaceSize = 0.5, r.minSize = 0.25, r.maxSize = 4, r.levels = 4;
+    r.stages = {{"grid", 1.5, 100}};
+    r.cells = 10;
+    r.quality.emplace();
+    r.quality->maxSkewness = 1.25;
+    r.fit.emplace();
+    r.layers = LayerReport{3, 2.5, 1, 0.99};
+    r.patches = {{"body", "wall", 5, 6}};
+    r.regions.resize(1);
+    r.regions[0].name = "outside";
+    r.regions[0].parts = {0};
+    r.regions[0].box.add(Vec3{1, 2, 3});
+    r.leaks = {{Vec3{1, 2, 3}, 0.5, "through body"}};
+    r.checksum = "0123456789abcdef";
+    return r;
+}
+
+// Exactly the keys that others rely on, in order, with the values given.
+TEST(ReportWrite, HasTheContractsKeys) {
+    const Json json = Json::parse(reportText(sample()));
+    EXPECT_THAT(keys(json),
+                testing::ElementsAre("program", "geometry", "threads", "sizes", "seconds", "peak_rss_bytes",
+                                     "stages", "cells", "faces", "points", "wall_faces", "quality", "fit",
+                                     "layers", "patches", "regions", "leaks", "checksum"));
+    EXPECT_THAT(keys(json["program"]), testing::ElementsAre("name", "version"));
+    EXPECT_THAT(keys(json["geometry"]), testing::ElementsAre("files", "triangles", "parts"));
+    EXPECT_THAT(keys(json["sizes"]), testing::ElementsAre("surface", "min", "max", "levels"));
+    EXPECT_THAT(keys(json["stages"][0]), testing::ElementsAre("name", "seconds", "items"));
+    EXPECT_THAT(keys(json["quality"]),
+                testing::ElementsAre("ok", "negative_volume_cells", "wrong_oriented_faces",
+                                     "max_non_orthogonality", "mean_non_orthogonality", "max_skewness",
+                                     "max_aspect_ratio", "min_face_weight", "min_volume_ratio",
+                                     "min_determinant", "concave_cells"));
+    EXPECT_THAT(keys(json["fit"]), testing::ElementsAre("wall_nodes_on_geometry_fraction",
+                                                        "mean_distance_in_h", "max_distance_in_h",
+                                                        "feature_capture_fraction", "tilted_face_fraction"));
+    EXPECT_THAT(keys(json["layers"]), testing::ElementsAre("requested", "mean_count",
+                                                           "faces_covered_fraction", "thickness_fraction"));
+    EXPECT_THAT(keys(json["patches"][0]), testing::ElementsAre("name", "type", "faces"));
+    EXPECT_EQ(json["quality"]["ok"], true);
+    EXPECT_EQ(json["quality"]["max_skewness"], 1.25);
+    EXPECT_EQ(json["patches"][0]["faces"], 6);
+    EXPECT_EQ(json["regions"][0]["parts"][0], "body");
+    EXPECT_EQ(json["leaks"][0]["width"], 0.5);
+    EXPECT_EQ(json["stages"][0]["items"], 100);
+}
+
+// A number that JSON cannot hold is null wherever it turns up, a part of the run that was not reached
+// likewise, and a file name that is not UTF-8 does not stop the report.
+TEST(ReportWrite, NotFiniteIsNull) {
+    RunReport r = sample();
+    r.quality->maxSkewness = std::numeric_limits<double>::quiet_NaN();
+    r.fit->maxDistanceInH = std::numeric_limits<double>::infinity();
+    r.regions[0].box = Box();
+    r.seconds = -std::numeric_limits<double>::infinity();
+    r.layers.reset();
+    r.files = {"b\xff.stl"};
+    const Json json = Json::parse(reportText(r));
+    EXPECT_TRUE(json["quality"]["max_skewness"].is_null());
+    EXPECT_TRUE(json["fit"]["max_distance_in_h"].is_null());
+    EXPECT_TRUE(json["regions"][0]["box"][0][0].is_null());
+    EXPECT_TRUE(json["seconds"].is_null());
+    EXPECT_TRUE(json["layers"].is_null());
+    EXPECT_EQ(json["geometry"]["files"][0], "b\xEF\xBF\xBD.stl");
+}
+
+// The file holds the same text.
+TEST(ReportWrite, WritesTheFile) {
+    const test::TempFolder temp;
+    writeReport(sample(), temp / "report.json");
+    EXPECT_EQ(test::contents(temp / "report.json"), reportText(sample()));
+}
+
+} // namespace
+} // namespace i2b
