@@ -1,8 +1,11 @@
 // Quality of a PolyMesh in OpenFOAM's own measures, to the letter (checkMesh -allTopology -allGeometry).
 #pragma once
 #include "i2b/assemble/poly_mesh.h"
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace i2b {
@@ -32,6 +35,42 @@ struct QualityCheck {
     std::vector<std::int32_t> ids;   // of the failing faces, cells or points, ascending (at most 1000)
 };
 
+enum class SurfaceTopology { empty, closed, sharedPoint, open, sharedEdge };
+
+// One patch as a surface of its own.
+struct PatchQuality {
+    std::string name;
+    std::int64_t faces = 0, points = 0;
+    SurfaceTopology topology = SurfaceTopology::empty;
+    Box box;                         // m
+};
+
+struct ZoneQuality {
+    std::string name;
+    std::int64_t cells = 0, points = 0;
+    double volume = 0;               // m^3
+    Box box;                         // m
+};
+
+// Cells that are connected through faces; numbered by their first cell.
+struct RegionQuality {
+    std::int64_t cells = 0;
+    bool pointConnected = false;     // shares a boundary point with another region
+};
+
+// What a mesh is made of. A cell's shape follows from the sizes of its faces, as checkMesh sees it.
+struct MeshStatistics {
+    std::int64_t internalPoints = -1; // used by no boundary face; -1 unless these points come first
+    std::int64_t edges = 0, internalEdges = 0, internalEdgesOnePoint = 0, internalEdgesTwoPoints = 0; // if not -1
+    std::int64_t hexahedra = 0, prisms = 0, wedges = 0, pyramids = 0, tetWedges = 0, tetrahedra = 0, polyhedra = 0;
+    std::vector<std::pair<std::int64_t, std::int64_t>> polyhedraByFaces; // faces, cells; ascending
+};
+
+struct WedgeQuality {
+    std::string name;
+    double angle = 0;                // degrees
+};
+
 struct QualityReport {
     std::int64_t cells = 0, faces = 0, internalFaces = 0, points = 0;
     std::int64_t negativeVolumeCells = 0;
@@ -45,11 +84,42 @@ struct QualityReport {
     double minFaceArea = 0, maxFaceArea = 0;                  // m^2
     double minFaceWeight = 0, meanFaceWeight = 0, minVolumeRatio = 0, meanVolumeRatio = 0;
     double minDeterminant = 0, meanDeterminant = 0, minFaceFlatness = 0, meanFaceFlatness = 0;
+    MeshStatistics statistics;
+    std::vector<PatchQuality> patches;
+    std::vector<ZoneQuality> zones;
+    std::vector<RegionQuality> regions;
+    std::vector<WedgeQuality> wedges;
+    Box box;                                  // m, of all points
+    std::array<int, 3> geometricDirections{1, 1, 1}, solutionDirections{1, 1, 1}; // 0: empty or wedge
+    bool boundaryDefined = true;              // patches follow each other and have different names
+    bool emptyFacesDivide = true;             // faces on empty patches are a multiple of the cells
+    bool upperTriangular = true;
+    std::int64_t multiplyConnectedCells = 0;  // with more than one face to the same neighbour
+    std::int64_t unusedPoints = 0, faultyFaceVertices = 0, openCellsByEdges = 0;
+    std::int64_t baffleFaces = 0, duplicateFaces = 0, nonConsecutiveFaces = 0;
+    std::int64_t misalignedEdges = 0;         // in meshes with an empty direction
+    Vec3 boundaryOpenness;                    // area sum over area, per axis
+    std::int64_t highAspectRatioCells = 0, nonOrthogonalityErrors = 0;
+    std::int64_t tetErrors = 0;               // faces whose decomposition into tetrahedra is poor (sides counted)
+    double minEdgeLength = 0, maxEdgeLength = 0, nearDistance = 0; // m
+    std::int64_t shortEdgePoints = 0, concaveFaces = 0, warpedFaces = 0, flatnessFaces = 0;
+    double maxConcaveAngle = 0;               // degrees
+    QualityLimits limits;                     // those it was measured with
     std::vector<QualityCheck> checks;         // in checkMesh's order, those with a count only
     int failedChecks = 0;                     // checkMesh's "Failed n mesh checks."
     bool ok() const { return failedChecks == 0; }
 };
 
+// Formulas and tolerances: OpenFOAM v1912, evaluated in its order, so that figures agree to the last digit printed,
+// round-off included. Coupled patches (cyclic, processor) are taken as plain boundary. Needs valid indices (what
+// PolyMesh::validate() says about ranges); anything else may be wrong with the mesh. Deterministic on any number of threads.
 QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits = {});
+
+// The report in checkMesh's own lines, order and six significant digits, from "Mesh stats" to the verdict, so that
+// a diff shows where the two differ. Left out: what checkMesh says about files it writes for regions and point zones.
+std::string formatQuality(const QualityReport& report);
+
+// The named check, or null where nothing fails it.
+const QualityCheck* findCheck(const QualityReport& report, std::string_view name);
 
 } // namespace i2b

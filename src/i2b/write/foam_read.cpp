@@ -20,9 +20,11 @@ std::optional<std::string> findFile(const fs::path& folder, const char* name) {
 }
 
 fs::path meshFolder(const std::string& folder) {
-    for (const fs::path& path : {fs::path(folder), fs::path(folder) / "polyMesh", fs::path(folder) / "constant/polyMesh"})
+    for (const fs::path& path :
+         {fs::path(folder), fs::path(folder) / "polyMesh", fs::path(folder) / "constant/polyMesh"})
         if (findFile(path, "points") && findFile(path, "faces")) return path;
-    throw Error(ErrorKind::input, "there is no OpenFOAM mesh (files points, faces, owner, neighbour, boundary)", folder,
+    throw Error(ErrorKind::input,
+                "there is no OpenFOAM mesh (files points, faces, owner, neighbour, boundary)", folder,
                 "name a case folder with constant/polyMesh, or the polyMesh folder itself");
 }
 
@@ -86,10 +88,14 @@ std::vector<Patch> readBoundary(const std::string& path) {
         scan.expect("{");
         while (scan.peek() != "}") {
             const std::string_view key = scan.next();
-            if (key == "type") patch.type = std::string(scan.next()), scan.expect(";");
-            else if (key == "nFaces") patch.count = static_cast<std::int32_t>(scan.integer()), scan.expect(";");
-            else if (key == "startFace") patch.start = static_cast<std::int32_t>(scan.integer()), scan.expect(";");
-            else skipValue(scan);
+            if (key == "type")
+                patch.type = std::string(scan.next()), scan.expect(";");
+            else if (key == "nFaces")
+                patch.count = static_cast<std::int32_t>(scan.integer()), scan.expect(";");
+            else if (key == "startFace")
+                patch.start = static_cast<std::int32_t>(scan.integer()), scan.expect(";");
+            else
+                skipValue(scan);
         }
         scan.expect("}");
         patches.push_back(std::move(patch));
@@ -129,14 +135,17 @@ std::vector<CellZone> readZones(const std::string& path) {
 // What the rest of the program relies on before it looks at anything else.
 void checkRanges(const PolyMesh& mesh, const std::string& folder) {
     const auto fail = [&](const std::string& what) {
-        throw Error(ErrorKind::input, what, folder, "the files of the mesh do not belong together; write it again");
+        throw Error(ErrorKind::input, what, folder,
+                    "the files of the mesh do not belong together; write it again");
     };
     const Index faces = mesh.owner.size();
     if (mesh.faceOffsets.size() != faces + 1)
         fail(fmt::format("{} faces, but {} owners", mesh.faceOffsets.size() - 1, faces));
-    if (mesh.neighbour.size() > faces) fail(fmt::format("{} neighbours for {} faces", mesh.neighbour.size(), faces));
+    if (mesh.neighbour.size() > faces)
+        fail(fmt::format("{} neighbours for {} faces", mesh.neighbour.size(), faces));
     for (Index f = 0; f < faces; ++f)
-        if (mesh.faceOffsets[f + 1] < mesh.faceOffsets[f] + 3) fail(fmt::format("face {} has fewer than 3 vertices", f));
+        if (mesh.faceOffsets[f + 1] < mesh.faceOffsets[f] + 3)
+            fail(fmt::format("face {} has fewer than 3 vertices", f));
     const auto inRange = [](const std::vector<std::int32_t>& values, Index limit) {
         return std::all_of(values.begin(), values.end(),
                            [&](std::int32_t v) { return v >= 0 && static_cast<Index>(v) < limit; });
@@ -146,9 +155,11 @@ void checkRanges(const PolyMesh& mesh, const std::string& folder) {
         fail("a face has an owner or neighbour below zero");
     for (const Patch& patch : mesh.patches)
         if (patch.count < 0 || patch.start < 0 || Index(patch.start) + Index(patch.count) > faces)
-            fail(fmt::format("patch {} has {} faces from {}, of {} faces", patch.name, patch.count, patch.start, faces));
+            fail(fmt::format("patch {} has {} faces from {}, of {} faces", patch.name, patch.count,
+                             patch.start, faces));
     for (const CellZone& zone : mesh.zones)
-        if (!inRange(zone.cells, Index(mesh.cells))) fail(fmt::format("zone {} has a cell that is not there", zone.name));
+        if (!inRange(zone.cells, Index(mesh.cells)))
+            fail(fmt::format("zone {} has a cell that is not there", zone.name));
 }
 
 } // namespace

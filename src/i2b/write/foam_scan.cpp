@@ -12,7 +12,8 @@ namespace {
 bool isSpace(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 bool isPunctuation(char c) { return c == '(' || c == ')' || c == '{' || c == '}' || c == ';'; }
 
-template <class T> T load(const char* from) {
+template <class T>
+T load(const char* from) {
     T value;
     std::memcpy(&value, from, sizeof value);
     return value;
@@ -29,7 +30,8 @@ int sizeAfter(std::string_view arch, std::string_view key, int otherwise) {
 FoamScanner::FoamScanner(const MappedFile& file) : file_(file), text_(file.bytes()) { readHeader(); }
 
 void FoamScanner::fail(const std::string& what) const {
-    const auto lines = std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(std::min(at_, text_.size())), '\n');
+    const auto lines = std::count(
+        text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(std::min(at_, text_.size())), '\n');
     const std::string where = header_.binary ? fmt::format("{}, byte {}", file_.path(), at_)
                                              : fmt::format("{}, line {}", file_.path(), lines + 1);
     throw Error(ErrorKind::input, what, where, "write the mesh again, or convert it with foamFormatConvert");
@@ -63,7 +65,8 @@ std::string_view FoamScanner::peek() {
         return text_.substr(begin, std::min(end + 1, text_.size()) - begin);
     }
     if (!isPunctuation(text_[begin]))
-        while (end < text_.size() && !isSpace(text_[end]) && !isPunctuation(text_[end]) && text_[end] != '"') ++end;
+        while (end < text_.size() && !isSpace(text_[end]) && !isPunctuation(text_[end]) && text_[end] != '"')
+            ++end;
     return text_.substr(begin, end - begin);
 }
 
@@ -163,7 +166,8 @@ void FoamScanner::appendLabels(std::vector<std::int32_t>& to) {
         if (size == 4 && n > 0) {
             std::memcpy(to.data() + start, bytes.data(), n * 4);
         } else {
-            for (std::size_t i = 0; i < n; ++i) to[start + i] = checkedLabel(load<std::int64_t>(bytes.data() + i * 8));
+            for (std::size_t i = 0; i < n; ++i)
+                to[start + i] = checkedLabel(load<std::int64_t>(bytes.data() + i * 8));
         }
     } else {
         if (n == 0 && peek() != "(") return;

@@ -20,12 +20,12 @@ class FoamScanner {
     explicit FoamScanner(const MappedFile& file); // reads the header
     const FoamHeader& header() const { return header_; }
 
-    std::string_view peek();                      // the next token: one of (){}[]; or a word, or a quoted string
+    std::string_view peek(); // the next token: one of (){}[]; or a word, or a quoted string
     std::string_view next();
     void expect(std::string_view token);
     std::int64_t integer();
 
-    std::vector<std::int32_t> labels();           // N(...) or N{value}
+    std::vector<std::int32_t> labels();               // N(...) or N{value}
     void appendLabels(std::vector<std::int32_t>& to); // the same, at the end of a list
     std::vector<Vec3> points();
 

@@ -1,0 +1,108 @@
+#include "i2b/quality/measure_steps.h"
+#include <algorithm>
+
+namespace i2b {
+namespace {
+
+using Index = std::size_t;
+
+enum class Kind { cells, faces, points };
+
+Vec3 place(const Measurement& m, Kind kind, std::int32_t id) {
+    const auto i = static_cast<Index>(id);
+    return kind == Kind::cells   ? m.geometry.cellCentre[i]
+           : kind == Kind::faces ? m.geometry.faceCentre[i]
+                                 : m.mesh.points[i];
+}
+
+// In checkMesh's order. The open-cell check reports before it looks at aspect ratios, and counts as one.
+void listChecks(Measurement& m) {
+    QualityReport& r = m.report;
+    QualityTallies& t = m.tallies;
+    const auto add = [&](const char* name, Kind kind, Tally& tally, bool fails) {
+        if (fails) ++r.failedChecks;
+        if (tally.count == 0) return;
+        r.checks.push_back({name, tally.count, fails, place(m, kind, tally.worstId), std::move(tally.ids)});
+    };
+    const auto failing = [](const Tally& tally) { return tally.count > 0; };
+    add("illegalCells", Kind::cells, t.illegalCells, failing(t.illegalCells));
+    add("unusedPoints", Kind::points, t.unusedPoints, failing(t.unusedPoints));
+    add("upperTriangularFace", Kind::faces, t.upperTriangularFace, !r.upperTriangular);
+    add("outOfRangeFaces", Kind::faces, t.outOfRangeFaces, failing(t.outOfRangeFaces));
+    if (r.openCellsByEdges > 0) add("zipUpCells", Kind::cells, t.zipUpCells, true);
+    add("edgeFaces", Kind::faces, t.edgeFaces, false);
+    add("oneInternalFaceCells", Kind::cells, t.oneInternalFaceCells, false);
+    add("twoInternalFacesCells", Kind::cells, t.twoInternalFacesCells, false);
+    add("multiRegionPoints", Kind::points, t.multiRegionPoints, false);
+    add("nonManifoldPoints", Kind::points, t.nonManifoldPoints, false);
+    add("nonAlignedEdges", Kind::points, t.nonAlignedEdges, failing(t.nonAlignedEdges));
+    const Vec3& open = r.boundaryOpenness;
+    if (std::max({std::abs(open.x), std::abs(open.y), std::abs(open.z)}) > m.limits.closedness)
+        ++r.failedChecks;
+    add("nonClosedCells", Kind::cells, t.nonClosedCells, failing(t.nonClosedCells));
+    add("highAspectRatioCells", Kind::cells, t.highAspectRatioCells,
+        r.openCells == 0 && r.highAspectRatioCells > 0);
+    add("zeroAreaFaces", Kind::faces, t.zeroAreaFaces, failing(t.zeroAreaFaces));
+    add("zeroVolumeCells", Kind::cells, t.zeroVolumeCells, failing(t.zeroVolumeCells));
+    add("nonOrthoFaces", Kind::faces, t.nonOrthoFaces, r.nonOrthogonalityErrors > 0);
+    add("wrongOrientedFaces", Kind::faces, t.wrongOrientedFaces, failing(t.wrongOrientedFaces));
+    add("skewFaces", Kind::faces, t.skewFaces, failing(t.skewFaces));
+    add("lowQualityTetFaces", Kind::faces, t.lowQualityTetFaces, failing(t.lowQualityTetFaces));
+    add("shortEdges", Kind::points, t.shortEdges, false);
+    add("nearPoints", Kind::points, t.nearPoints, false);
+    add("concaveFaces", Kind::faces, t.concaveFaces, false);
+    add("warpedFaces", Kind::faces, t.warpedFaces, false);
+    add("underdeterminedCells", Kind::cells, t.underdeterminedCells, failing(t.underdeterminedCells));
+    add("concaveCells", Kind::cells, t.concaveCells, failing(t.concaveCells));
+    add("lowWeightFaces", Kind::faces, t.lowWeightFaces, failing(t.lowWeightFaces));
+    add("lowVolRatioFaces", Kind::faces, t.lowVolRatioFaces, failing(t.lowVolRatioFaces));
+}
+
+Box pointBox(const std::vector<Vec3>& points) {
+    return orderedReduce(
+        points.size(), Box{},
+        [&](Index begin, Index end) {
+            Box box;
+            for (Index i = begin; i < end; ++i) box.add(points[i]);
+            return box;
+        },
+        [](Box a, const Box& b) {
+            a.add(b);
+            return a;
+        });
+}
+
+} // namespace
+
+QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits) {
+    Measurement m{mesh, limits, {}, {}, {}, {}, {}};
+    m.report.limits = limits;
+    m.report.cells = mesh.cells;
+    m.report.faces = mesh.faces();
+    m.report.internalFaces = mesh.internalFaces();
+    m.report.points = static_cast<std::int64_t>(mesh.points.size());
+    m.report.box = pointBox(mesh.points);
+    measureFaces(m);
+    measureDirections(m);
+    measureAlignment(m);
+    m.cellFaces = buildCellFaces(mesh);
+    measureCells(m);
+    measureFaceCells(m);
+    measureZones(m);
+    m.cellFaces = {};
+    measureRegions(m);
+    measurePatches(m);
+    const Rows pointFaces = buildPointFaces(mesh);
+    measurePoints(m, pointFaces);
+    measureFaceFaces(m, pointFaces);
+    listChecks(m);
+    return std::move(m.report);
+}
+
+const QualityCheck* findCheck(const QualityReport& report, std::string_view name) {
+    const auto found = std::find_if(report.checks.begin(), report.checks.end(),
+                                    [&](const QualityCheck& c) { return c.name == name; });
+    return found == report.checks.end() ? nullptr : &*found;
+}
+
+} // namespace i2b

@@ -1,0 +1,323 @@
+#include "i2b/quality/cell_edges.h"
+#include "i2b/quality/measure_steps.h"
+#include <map>
+
+namespace i2b {
+namespace {
+
+using Index = std::size_t;
+constexpr double rootTiny = 1e-150, tiny = 1e-300, huge = 1e300;
+constexpr double planarCosine = 1e-6; // face centres nearer a face's plane than this make a cell concave
+
+struct CellPart {
+    Tally illegal, zipUp, multiFaces, oneInternal, twoInternal, open, aspect, zeroVolume, determinant,
+        concave;
+    std::int64_t openByEdges = 0, unordered = 0, multiplyConnected = 0;
+    Extremes openness, aspectRatio, volume, determinants;
+    MeshStatistics shapes;
+    std::map<std::int64_t, std::int64_t> polyhedra;
+    std::vector<std::int32_t> unorderedFaces;
+
+    void join(const CellPart& o) {
+        illegal.join(o.illegal), zipUp.join(o.zipUp), oneInternal.join(o.oneInternal),
+            twoInternal.join(o.twoInternal);
+        open.join(o.open), aspect.join(o.aspect), zeroVolume.join(o.zeroVolume),
+            determinant.join(o.determinant);
+        concave.join(o.concave);
+        openByEdges += o.openByEdges, unordered += o.unordered, multiplyConnected += o.multiplyConnected;
+        openness.join(o.openness), aspectRatio.join(o.aspectRatio), volume.join(o.volume);
+        determinants.join(o.determinants);
+        shapes.hexahedra += o.shapes.hexahedra, shapes.prisms += o.shapes.prisms,
+            shapes.wedges += o.shapes.wedges;
+        shapes.pyramids += o.shapes.pyramids, shapes.tetWedges += o.shapes.tetWedges;
+        shapes.tetrahedra += o.shapes.tetrahedra, shapes.polyhedra += o.shapes.polyhedra;
+        for (const auto& [n, count] : o.polyhedra) polyhedra[n] += count;
+        unorderedFaces.insert(unorderedFaces.end(), o.unorderedFaces.begin(), o.unorderedFaces.end());
+    }
+};
+
+// Edge use by sorting, for cells with too many vertices for CellEdges.
+struct EdgeUse {
+    bool once = false, over = false;
+};
+EdgeUse sortedEdgeUse(const PolyMesh& mesh, std::span<const std::int32_t> faces) {
+    std::vector<std::uint64_t> edges;
+    for (const std::int32_t f : faces) {
+        const std::span<const std::int32_t> v = mesh.face(f);
+        for (Index i = 0; i < v.size(); ++i) {
+            const std::int32_t a = v[i], b = v[i + 1 == v.size() ? 0 : i + 1];
+            edges.push_back(std::uint64_t(std::uint32_t(std::min(a, b))) << 32 |
+                            std::uint32_t(std::max(a, b)));
+        }
+    }
+    std::sort(edges.begin(), edges.end());
+    EdgeUse use;
+    for (Index i = 0, j = 0; i < edges.size(); i = j) {
+        while (j < edges.size() && edges[j] == edges[i]) ++j;
+        use.once |= j - i == 1;
+        use.over |= j - i > 2;
+    }
+    return use;
+}
+
+void checkEdges(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::int32_t cell,
+                CellEdges& edges, CellPart& part) {
+    edges.clear();
+    bool fits = true;
+    for (const std::int32_t f : faces)
+        if (!edges.addFace(mesh.face(f))) {
+            fits = false;
+            break;
+        }
+    const EdgeUse use = fits ? EdgeUse{edges.anyEdgeOnce(), edges.anyEdgeOver()} : sortedEdgeUse(mesh, faces);
+    if (use.once) ++part.openByEdges;
+    if (use.once || use.over) part.zipUp.hit(cell);
+}
+
+bool disjoint(std::span<const std::int32_t> a, std::span<const std::int32_t> b) {
+    for (const std::int32_t v : a)
+        if (std::find(b.begin(), b.end(), v) != b.end()) return false;
+    return true;
+}
+
+// By the number of triangles and quads alone where that settles it; vertices: of the cell.
+void countShape(const PolyMesh& mesh, std::span<const std::int32_t> faces, int vertices, CellPart& part) {
+    int triangles = 0, quads = 0;
+    std::span<const std::int32_t> triangle[2];
+    for (const std::int32_t f : faces) {
+        const std::span<const std::int32_t> v = mesh.face(f);
+        if (v.size() == 3)
+            triangle[triangles++ % 2] = v;
+        else if (v.size() == 4)
+            ++quads;
+    }
+    MeshStatistics& s = part.shapes;
+    const bool simple = Index(triangles + quads) == faces.size();
+    if (simple && triangles == 0 && quads == 6)
+        ++s.hexahedra;
+    else if (simple && triangles == 4 && quads == 0)
+        ++s.tetrahedra;
+    else if (simple && triangles == 4 && quads == 1)
+        ++s.pyramids;
+    else if (simple && triangles == 2 && quads == 3 && vertices == 6 && disjoint(triangle[0], triangle[1]))
+        ++s.prisms;
+    else if (simple && triangles == 2 && quads == 4 && vertices == 7)
+        ++s.wedges;
+    else if (simple && triangles == 2 && quads == 2)
+        ++s.tetWedges;
+    else
+        ++s.polyhedra, ++part.polyhedra[static_cast<std::int64_t>(faces.size())];
+}
+
+// Internal faces of a cell should lead to its higher neighbours in their order.
+void checkOrder(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::int32_t cell, CellPart& part,
+                std::vector<std::pair<std::int32_t, std::int32_t>>& scratch) {
+    const std::int32_t internal = mesh.internalFaces();
+    std::int32_t lastCell = -1, lastFace = -1;
+    bool ordered = true;
+    scratch.clear();
+    for (const std::int32_t f : faces) {
+        if (f >= internal) continue;
+        const std::int32_t owner = mesh.owner[Index(f)], neighbour = mesh.neighbour[Index(f)];
+        const std::int32_t other = neighbour == cell ? owner : neighbour;
+        if (other <= cell) continue;
+        ordered = ordered && other > lastCell && f > lastFace;
+        lastCell = other, lastFace = f;
+        scratch.emplace_back(other, f);
+    }
+    if (ordered) return;
+    std::stable_sort(scratch.begin(), scratch.end(), [](auto& a, auto& b) { return a.first < b.first; });
+    bool multiple = false;
+    for (Index i = 1; i < scratch.size(); ++i) {
+        const auto& [before, beforeFace] = scratch[i - 1];
+        const auto& [here, face] = scratch[i];
+        if (here == before) {
+            multiple = true;
+            part.unorderedFaces.push_back(beforeFace);
+            part.unorderedFaces.push_back(face);
+        } else if (face < beforeFace) {
+            ++part.unordered;
+            part.unorderedFaces.push_back(face);
+        }
+    }
+    if (multiple) ++part.multiplyConnected;
+}
+
+struct Directions {
+    std::array<bool, 3> valid{};
+    int count = 0, missing = -1;
+};
+
+void checkClosedness(const Measurement& m, std::span<const std::int32_t> faces, std::int32_t cell,
+                     const Directions& directions, CellPart& part) {
+    Vec3 sum, sizes;
+    for (const std::int32_t f : faces) {
+        const Vec3& area = m.geometry.faceArea[Index(f)];
+        if (m.mesh.owner[Index(f)] == cell)
+            sum += area;
+        else
+            sum -= area;
+        sizes += Vec3{std::abs(area.x), std::abs(area.y), std::abs(area.z)};
+    }
+    double openness = 0, least = huge, most = -huge;
+    for (int k = 0; k < 3; ++k) {
+        openness = std::max(openness, std::abs(sum[k]) / (sizes[k] + rootTiny));
+        if (!directions.valid[Index(k)]) continue;
+        least = std::min(least, sizes[k]);
+        most = std::max(most, sizes[k]);
+    }
+    double aspect = most / (least + rootTiny);
+    if (directions.count == 3) {
+        const double volume = std::max(rootTiny, m.geometry.cellVolume[Index(cell)]);
+        aspect = std::max(aspect, 1.0 / 6.0 * (sizes.x + sizes.y + sizes.z) / std::pow(volume, 2.0 / 3.0));
+    }
+    part.openness.add(openness);
+    part.aspectRatio.add(aspect);
+    if (openness > m.limits.closedness) part.open.hit(cell, openness);
+    if (aspect > m.limits.aspectRatio) part.aspect.hit(cell, aspect);
+}
+
+// Of the sum of n n^T over the internal faces, each n the area over their mean area; 1 for a cube inside the
+// mesh.
+double determinant(const Measurement& m, std::span<const std::int32_t> faces, const Directions& directions) {
+    if (directions.count == 1) return 1;
+    const std::int32_t internal = m.mesh.internalFaces();
+    double mean = 0;
+    int n = 0;
+    for (const std::int32_t f : faces)
+        if (f < internal) mean += norm(m.geometry.faceArea[Index(f)]), ++n;
+    if (n == 0 || mean < rootTiny) return 0;
+    mean /= n;
+    double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+    for (const std::int32_t f : faces) {
+        if (f >= internal) continue;
+        const Vec3 a = divided(m.geometry.faceArea[Index(f)], mean);
+        xx += a.x * a.x, xy += a.x * a.y, xz += a.x * a.z;
+        yy += a.y * a.y, yz += a.y * a.z, zz += a.z * a.z;
+    }
+    if (directions.count == 2) (directions.missing == 0 ? xx : directions.missing == 1 ? yy : zz) = 1;
+    return std::abs(xx * yy * zz + xy * yz * xz + xz * xy * yz - xx * yz * yz - xy * xy * zz - xz * yy * xz) /
+           8.0;
+}
+
+// Does any face centre lie on the outer side of another face's plane, or in it? The angle is compared without
+// normalising the difference unless it is within rounding of the tolerance.
+bool isConcave(const Measurement& m, std::span<const std::int32_t> faces, std::int32_t cell) {
+    for (const std::int32_t f : faces) {
+        const Vec3& area = m.geometry.faceArea[Index(f)];
+        Vec3 normal = divided(area, std::max(norm(area), tiny));
+        if (m.mesh.owner[Index(f)] != cell) normal = normal * -1.0;
+        for (const std::int32_t g : faces) {
+            if (g == f) continue;
+            const Vec3 d = m.geometry.faceCentre[Index(g)] - m.geometry.faceCentre[Index(f)];
+            const double along = dot(d, normal), size2 = norm2(d);
+            if (along < 0 && along * along > (1.01 * planarCosine * planarCosine) * size2 && size2 > 1e-280)
+                continue;
+            if (dot(divided(d, std::max(std::sqrt(size2), tiny)), normal) > -planarCosine) return true;
+        }
+    }
+    return false;
+}
+
+int internalFaces(const PolyMesh& mesh, std::span<const std::int32_t> faces) {
+    int n = 0;
+    for (const std::int32_t f : faces) n += f < mesh.internalFaces() ? 1 : 0;
+    return n;
+}
+
+void storeOrder(Measurement& m, CellPart& total) {
+    const PolyMesh& mesh = m.mesh;
+    std::int64_t reversed = 0;
+    for (Index f = 0; f < mesh.neighbour.size(); ++f)
+        if (mesh.owner[f] >= mesh.neighbour[f]) {
+            ++reversed;
+            total.unorderedFaces.push_back(static_cast<std::int32_t>(f));
+        }
+    std::vector<std::int32_t>& faces = total.unorderedFaces;
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    for (const std::int32_t f : faces) m.tallies.upperTriangularFace.hit(f);
+    m.report.upperTriangular = reversed == 0 && total.unordered == 0;
+    m.report.multiplyConnectedCells = total.multiplyConnected;
+}
+
+void store(Measurement& m, CellPart& total, double volumeSum, double determinantSum) {
+    QualityReport& r = m.report;
+    QualityTallies& t = m.tallies;
+    if (m.mesh.cells > 0) {
+        r.minVolume = total.volume.least, r.maxVolume = total.volume.most;
+        r.maxOpenness = total.openness.most, r.maxAspectRatio = total.aspectRatio.most;
+        r.minDeterminant = total.determinants.least,
+        r.meanDeterminant = determinantSum / double(m.mesh.cells);
+    }
+    r.totalVolume = volumeSum;
+    r.negativeVolumeCells = total.zeroVolume.count;
+    r.openCells = total.open.count, r.highAspectRatioCells = total.aspect.count;
+    r.openCellsByEdges = total.openByEdges;
+    r.smallDeterminantCells = total.determinant.count, r.concaveCells = total.concave.count;
+    r.statistics = total.shapes;
+    r.statistics.polyhedraByFaces.assign(total.polyhedra.begin(), total.polyhedra.end());
+    t.illegalCells = total.illegal, t.zipUpCells = total.zipUp;
+    t.oneInternalFaceCells = total.oneInternal, t.twoInternalFacesCells = total.twoInternal;
+    t.nonClosedCells = total.open, t.highAspectRatioCells = total.aspect,
+    t.zeroVolumeCells = total.zeroVolume;
+    t.underdeterminedCells = total.determinant, t.concaveCells = total.concave;
+}
+
+} // namespace
+
+void measureCells(Measurement& m) {
+    const PolyMesh& mesh = m.mesh;
+    const auto cells = static_cast<Index>(mesh.cells);
+    Directions directions;
+    for (int k = 0; k < 3; ++k) {
+        directions.valid[Index(k)] = m.report.geometricDirections[Index(k)] == 1;
+        if (directions.valid[Index(k)])
+            ++directions.count;
+        else
+            directions.missing = k;
+    }
+    m.geometry.cellCentre.resize(cells);
+    m.geometry.cellVolume.resize(cells);
+    constexpr Index block = Index(1) << 17;
+    std::vector<double> determinants(std::min(block, cells));
+    double volumeSum = 0, determinantSum = 0;
+    CellPart total;
+    const auto measure = [&](Index begin, Index end, CellPart& part) {
+        CellEdges edges;
+        std::vector<std::pair<std::int32_t, std::int32_t>> scratch;
+        for (Index c = begin; c < end; ++c) {
+            const auto cell = static_cast<std::int32_t>(c);
+            const std::span<const std::int32_t> faces = m.cellFaces[cell];
+            measureCell(mesh, faces, cell, m.geometry);
+            if (faces.size() <= 3) part.illegal.hit(cell);
+            checkEdges(mesh, faces, cell, edges, part);
+            countShape(mesh, faces, edges.vertices(), part);
+            checkOrder(mesh, faces, cell, part, scratch);
+            const int internal = internalFaces(mesh, faces);
+            if (internal <= 1)
+                part.oneInternal.hit(cell);
+            else if (internal == 2)
+                part.twoInternal.hit(cell);
+            const double volume = m.geometry.cellVolume[c];
+            part.volume.add(volume);
+            if (volume < m.limits.smallVolume) part.zeroVolume.hit(cell, -volume);
+            checkClosedness(m, faces, cell, directions, part);
+            const double det = determinant(m, faces, directions);
+            determinants[c % block] = det;
+            part.determinants.add(det);
+            if (det < m.limits.determinant) part.determinant.hit(cell, -det);
+            if (isConcave(m, faces, cell)) part.concave.hit(cell);
+        }
+    };
+    orderedBlocks(cells, block, total, measure, [&](Index begin, Index end) {
+        for (Index c = begin; c < end; ++c) {
+            volumeSum += m.geometry.cellVolume[c];
+            determinantSum += determinants[c - begin];
+        }
+    });
+    storeOrder(m, total);
+    store(m, total, volumeSum, determinantSum);
+}
+
+} // namespace i2b

@@ -1,0 +1,243 @@
+#include "i2b/quality/measure_steps.h"
+#include <numbers>
+
+namespace i2b {
+namespace {
+
+using Index = std::size_t;
+constexpr double small = 1e-15, rootTiny = 1e-150, tiny = 1e-300, great = 1e15, huge = 1e300;
+constexpr double tetTolerance = small * small;
+
+struct FaceCellPart {
+    Tally nonOrtho, wrongOriented, skew, lowWeight, lowVolRatio, lowQualityTets;
+    std::int64_t severe = 0, orthoErrors = 0, pyramidErrors = 0, tetErrors = 0;
+    Extremes ortho, skewness, weight, ratio;
+
+    void join(const FaceCellPart& o) {
+        nonOrtho.join(o.nonOrtho), wrongOriented.join(o.wrongOriented), skew.join(o.skew);
+        lowWeight.join(o.lowWeight), lowVolRatio.join(o.lowVolRatio), lowQualityTets.join(o.lowQualityTets);
+        severe += o.severe, orthoErrors += o.orthoErrors, pyramidErrors += o.pyramidErrors,
+            tetErrors += o.tetErrors;
+        ortho.join(o.ortho), skewness.join(o.skewness), weight.join(o.weight), ratio.join(o.ratio);
+    }
+};
+
+// How far the line between the centres misses the face's centre, over the face's extent that way. The extent
+// is at least leastExtent.
+double skewness(const PolyMesh& mesh, std::span<const std::int32_t> v, const Vec3& faceCentre,
+                const Vec3& area, const Vec3& toFace, const Vec3& across, double leastExtent) {
+    const Vec3 miss = toFace - (dot(area, toFace) / (dot(area, across) + rootTiny)) * across;
+    const double size = norm(miss);
+    const Vec3 direction = divided(miss, size + rootTiny);
+    double extent = leastExtent;
+    for (const std::int32_t p : v)
+        extent = std::max(extent, std::abs(dot(direction, mesh.points[Index(p)] - faceCentre)));
+    return size / extent;
+}
+
+// Volume over that of the regular tetrahedron in the same circumsphere; negative where inverted.
+double tetQuality(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    const double volume = (1.0 / 6.0) * dot(cross(b - a, c - a), d - a);
+    const Vec3 p = b - a, q = c - a, r = d - a;
+    const double lambda = norm2(r) - dot(p, r), mu = norm2(q) - dot(p, q);
+    const Vec3 qp = cross(q, p), rp = cross(r, p);
+    const double denominator = dot(r, qp);
+    double radius = great;
+    if (!(std::abs(denominator) < rootTiny))
+        radius = norm(0.5 * (p + divided(lambda * qp - mu * rp, denominator)));
+    radius = std::min(radius, great);
+    return volume / (8.0 / (9.0 * std::sqrt(3.0)) * (radius * radius * radius) + rootTiny);
+}
+
+// Sign of the quality where a glance settles that its size is over the tolerance, else 0. With D six times
+// the volume and L the longest edge at a, the circumradius is at most 2.5 L^4/|D|, hence |quality| >
+// |D|^4/(49 L^12); |D|/L^3 > 1e-6 makes that 2e-26, ten thousand times the tolerance.
+int clearSign(double sixfoldVolume, double longest2) {
+    const double d2 = sixfoldVolume * sixfoldVolume;
+    if (!(d2 > 1e-12 * longest2 * longest2 * longest2) || !(d2 > 1e-280)) return 0;
+    return sixfoldVolume > 0 ? 1 : -1;
+}
+
+// The fan of triangles from vertex base, with its apex at the cell's centre: no tetrahedron at or below the
+// tolerance? (Equivalent to: the least quality is over it.)
+bool fanIsGood(const PolyMesh& mesh, std::span<const std::int32_t> v, Index base, const Vec3& apex,
+               bool owner) {
+    const Vec3& p0 = mesh.points[Index(v[base])];
+    double least = huge;
+    for (Index i = 1; i + 1 < v.size(); ++i) {
+        const Vec3* a = &mesh.points[Index(v[(i + base) % v.size()])];
+        const Vec3* b = &mesh.points[Index(v[(i + base + 1) % v.size()])];
+        if (!owner) std::swap(a, b);
+        const Vec3 e0 = p0 - apex, ea = *a - apex, eb = *b - apex;
+        const int sign = clearSign(dot(cross(e0, ea), eb), std::max({norm2(e0), norm2(ea), norm2(eb)}));
+        if (sign < 0) return false;
+        if (sign == 0) least = std::min(least, tetQuality(apex, p0, *a, *b));
+        if (!(least > tetTolerance)) return false;
+    }
+    return true;
+}
+
+// Does any vertex serve as base of a good fan, as seen from the owner and, inside the mesh, from the
+// neighbour?
+bool hasGoodBase(const PolyMesh& mesh, std::span<const std::int32_t> v, const Vec3& owner,
+                 const Vec3* neighbour) {
+    for (Index base = 0; base < v.size(); ++base)
+        if (fanIsGood(mesh, v, base, owner, true) &&
+            (neighbour == nullptr || fanIsGood(mesh, v, base, *neighbour, false)))
+            return true;
+    return false;
+}
+
+// The tetrahedra over the triangles around the face's centre: is any not clearly on the apex's side? side is
+// -1 for the owner, whose tetrahedra are negative, 1 for the neighbour.
+bool hasBadTet(const PolyMesh& mesh, std::span<const std::int32_t> v, const Vec3& faceCentre,
+               const Vec3& apex, int side) {
+    for (Index i = 0; i < v.size(); ++i) {
+        const Vec3& a = mesh.points[Index(v[i])];
+        const Vec3& b = mesh.points[Index(v[i + 1 == v.size() ? 0 : i + 1])];
+        const Vec3 ab = b - a, ac = faceCentre - a, ad = apex - a;
+        const int sign = clearSign(dot(cross(ab, ac), ad), std::max({norm2(ab), norm2(ac), norm2(ad)}));
+        if (sign == side) continue;
+        if (sign == -side) return true;
+        const double quality = tetQuality(a, b, faceCentre, apex);
+        if (side > 0 ? quality < tetTolerance : quality > -tetTolerance) return true;
+    }
+    return false;
+}
+
+int tetErrors(const PolyMesh& mesh, std::span<const std::int32_t> v, const Vec3& faceCentre,
+              const Vec3& owner, const Vec3* neighbour) {
+    int errors = hasBadTet(mesh, v, faceCentre, owner, -1) ? 1 : 0;
+    if (neighbour != nullptr && hasBadTet(mesh, v, faceCentre, *neighbour, 1)) ++errors;
+    if (!hasGoodBase(mesh, v, owner, neighbour)) ++errors;
+    return errors;
+}
+
+struct InternalValues {
+    double ortho, weight, ratio;
+};
+
+class FaceCells {
+  public:
+    explicit FaceCells(const Measurement& m)
+        : m_(m), mesh_(m.mesh), geometry_(m.geometry), internal_(Index(m.mesh.internalFaces())),
+          severeCosine_(std::cos(m.limits.nonOrthogonality * std::numbers::pi / 180)) {}
+
+    // values: where the face is internal
+    void measure(Index f, FaceCellPart& part, InternalValues* values) const {
+        const auto id = static_cast<std::int32_t>(f);
+        const std::span<const std::int32_t> v = mesh_.face(id);
+        const Vec3& centre = geometry_.faceCentre[f];
+        const Vec3& area = geometry_.faceArea[f];
+        const auto own = static_cast<Index>(mesh_.owner[f]);
+        const Vec3& ownCentre = geometry_.cellCentre[own];
+        const Vec3* neiCentre = nullptr;
+        double skew = 0, leastPyramid = dot(area, centre - ownCentre);
+        int wrong = leastPyramid / 3 < -small ? 1 : 0;
+        const Vec3 toFace = centre - ownCentre;
+        if (f < internal_) {
+            const auto nei = static_cast<Index>(mesh_.neighbour[f]);
+            neiCentre = &geometry_.cellCentre[nei];
+            const double pyramid = dot(area, *neiCentre - centre);
+            if (pyramid / 3 < -small) ++wrong;
+            leastPyramid = std::min(leastPyramid, pyramid);
+            const Vec3 across = *neiCentre - ownCentre;
+            skew = skewness(mesh_, v, centre, area, toFace, across, 0.2 * norm(across) + rootTiny);
+            *values = internalValues(id, own, nei, part);
+        } else {
+            const double size = norm(area);
+            const Vec3 normal = size < rootTiny ? Vec3{} : divided(area, size);
+            const Vec3 across = normal * dot(normal, toFace);
+            skew = skewness(mesh_, v, centre, area, toFace, across, 0.4 * norm(across) + rootTiny);
+        }
+        part.pyramidErrors += wrong;
+        if (wrong > 0) part.wrongOriented.hit(id, -leastPyramid);
+        part.skewness.add(skew);
+        if (skew > m_.limits.skewness) part.skew.hit(id, skew);
+        const int errors = tetErrors(mesh_, v, centre, ownCentre, neiCentre);
+        part.tetErrors += errors;
+        if (errors > 0) part.lowQualityTets.hit(id, -leastPyramid);
+    }
+
+  private:
+    InternalValues internalValues(std::int32_t id, Index own, Index nei, FaceCellPart& part) const {
+        const Vec3& centre = geometry_.faceCentre[Index(id)];
+        const Vec3& area = geometry_.faceArea[Index(id)];
+        const Vec3& ownCentre = geometry_.cellCentre[own];
+        const Vec3& neiCentre = geometry_.cellCentre[nei];
+        const Vec3 across = neiCentre - ownCentre;
+        InternalValues values;
+        values.ortho = dot(across, area) / (norm(across) * norm(area) + rootTiny);
+        if (values.ortho < severeCosine_) {
+            ++(values.ortho > small ? part.severe : part.orthoErrors);
+            part.nonOrtho.hit(id, -values.ortho);
+        }
+        const double ownDistance = std::abs(dot(area, centre - ownCentre));
+        const double neiDistance = std::abs(dot(area, neiCentre - centre));
+        values.weight = std::min(neiDistance, ownDistance) / (neiDistance + ownDistance + tiny);
+        if (values.weight < m_.limits.faceWeight) part.lowWeight.hit(id, -values.weight);
+        const double ownVolume = geometry_.cellVolume[own], neiVolume = geometry_.cellVolume[nei];
+        values.ratio = std::min(ownVolume, neiVolume) / (std::max(ownVolume, neiVolume) + tiny);
+        if (values.ratio < m_.limits.volumeRatio) part.lowVolRatio.hit(id, -values.ratio);
+        part.ortho.add(values.ortho), part.weight.add(values.weight), part.ratio.add(values.ratio);
+        return values;
+    }
+
+    const Measurement& m_;
+    const PolyMesh& mesh_;
+    const MeshGeometry& geometry_;
+    Index internal_;
+    double severeCosine_;
+};
+
+double degrees(double cosine) {
+    return std::acos(std::min(1.0, std::max(-1.0, cosine))) * 180 / std::numbers::pi;
+}
+
+} // namespace
+
+void measureFaceCells(Measurement& m) {
+    const auto faces = static_cast<Index>(m.mesh.faces()),
+               internal = static_cast<Index>(m.mesh.internalFaces());
+    const FaceCells faceCells(m);
+    constexpr Index block = Index(1) << 17;
+    std::vector<InternalValues> values(std::min(block, faces));
+    InternalValues sum{0, 0, 0};
+    FaceCellPart total;
+    orderedBlocks(
+        faces, block, total,
+        [&](Index begin, Index end, FaceCellPart& part) {
+            for (Index f = begin; f < end; ++f) faceCells.measure(f, part, &values[f % block]);
+        },
+        [&](Index begin, Index end) {
+            for (Index f = begin; f < std::min(end, internal); ++f) {
+                sum.ortho += values[f - begin].ortho;
+                sum.weight += values[f - begin].weight;
+                sum.ratio += values[f - begin].ratio;
+            }
+        });
+    QualityReport& r = m.report;
+    const auto n = static_cast<double>(internal);
+    if (internal > 0) {
+        r.maxNonOrthogonality = degrees(total.ortho.least);
+        r.meanNonOrthogonality = degrees(sum.ortho / n);
+        r.minFaceWeight = total.weight.least, r.meanFaceWeight = sum.weight / n;
+        r.minVolumeRatio = total.ratio.least, r.meanVolumeRatio = sum.ratio / n;
+    }
+    r.severeNonOrthogonalFaces = total.severe;
+    r.nonOrthogonalityErrors = total.orthoErrors;
+    r.wrongOrientedFaces = total.pyramidErrors;
+    r.maxSkewness = faces > 0 ? total.skewness.most : 0;
+    r.highlySkewFaces = total.skew.count;
+    r.lowWeightFaces = total.lowWeight.count;
+    r.lowVolumeRatioFaces = total.lowVolRatio.count;
+    r.tetErrors = total.tetErrors;
+    m.tallies.nonOrthoFaces = total.nonOrtho;
+    m.tallies.wrongOrientedFaces = total.wrongOriented;
+    m.tallies.skewFaces = total.skew;
+    m.tallies.lowWeightFaces = total.lowWeight;
+    m.tallies.lowVolRatioFaces = total.lowVolRatio;
+    m.tallies.lowQualityTetFaces = total.lowQualityTets;
+}
+
+} // namespace i2b

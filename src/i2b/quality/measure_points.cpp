@@ -1,0 +1,119 @@
+#include "i2b/quality/measure_steps.h"
+#include <algorithm>
+#include <atomic>
+#include <tbb/parallel_sort.h>
+
+namespace i2b {
+namespace {
+
+using Index = std::size_t;
+
+struct Near {
+    double key;
+    std::int32_t point;
+};
+
+// Marks the ends of all pairs closer than the distance. Sorted along an odd direction, near points are near
+// in the list, and regular meshes do not put whole planes of points at one key. checkMesh sorts by distance
+// from the origin and compares only points whose squared distances from it differ by less than near2; the
+// last test repeats that.
+void markNear(const std::vector<Vec3>& points, double near2, std::vector<std::uint8_t>& marks) {
+    const Vec3 direction = normalized({0.5377, 0.6180339887, 0.5731});
+    std::vector<Near> list(points.size());
+    parallelFor(
+        points.size(),
+        [&](Index i) {
+            list[i] = {dot(direction, points[i]), static_cast<std::int32_t>(i)};
+        },
+        4096);
+    tbb::parallel_sort(list.begin(), list.end(), [](const Near& a, const Near& b) {
+        return a.key < b.key || (a.key == b.key && a.point < b.point);
+    });
+    const double reach = std::sqrt(near2) * 1.001;
+    parallelFor(
+        list.size(),
+        [&](Index i) {
+            const Vec3& p = points[Index(list[i].point)];
+            const double size2 = norm2(p);
+            for (Index j = i + 1; j < list.size() && list[j].key - list[i].key <= reach; ++j) {
+                const Vec3& q = points[Index(list[j].point)];
+                if (!(norm2(p - q) < near2)) continue;
+                const double other2 = norm2(q);
+                if (!(std::min(size2, other2) > std::max(size2, other2) - near2)) continue;
+                for (const std::int32_t k : {list[i].point, list[j].point})
+                    std::atomic_ref<std::uint8_t>(marks[Index(k)]).store(1, std::memory_order_relaxed);
+            }
+        },
+        4096);
+}
+
+struct EdgeCounts {
+    std::int64_t all = 0, internal = 0, onePoint = 0, twoPoints = 0;
+    void join(const EdgeCounts& o) {
+        all += o.all, internal += o.internal, onePoint += o.onePoint, twoPoints += o.twoPoints;
+    }
+};
+
+// Internal points, and the edges, which checkMesh counts only if the internal points come first.
+void countEdges(Measurement& m, const Rows& pointFaces) {
+    const PolyMesh& mesh = m.mesh;
+    const std::int32_t internalFaces = mesh.internalFaces();
+    std::vector<std::uint8_t> onBoundary(mesh.points.size(), 0);
+    std::int64_t internal = 0;
+    for (Index p = 0; p < mesh.points.size(); ++p) {
+        const auto faces = pointFaces[static_cast<std::int32_t>(p)];
+        onBoundary[p] = !faces.empty() && faces.back() >= internalFaces ? 1 : 0;
+        internal += onBoundary[p] == 0 ? 1 : 0;
+    }
+    for (Index p = Index(internal); p < mesh.points.size(); ++p)
+        if (onBoundary[p] == 0 && !pointFaces[static_cast<std::int32_t>(p)].empty()) return;
+    EdgeCounts total;
+    orderedLoop(mesh.points.size(), total, [&](Index begin, Index end, EdgeCounts& part) {
+        std::vector<std::pair<std::int32_t, bool>> ends; // higher end; not on this boundary face
+        for (Index p = begin; p < end; ++p) {
+            const auto point = static_cast<std::int32_t>(p);
+            ends.clear();
+            for (const std::int32_t f : pointFaces[point]) {
+                const std::span<const std::int32_t> v = mesh.face(f);
+                for (Index i = 0; i < v.size(); ++i) {
+                    if (v[i] != point) continue;
+                    for (const std::int32_t q :
+                         {v[i + 1 == v.size() ? 0 : i + 1], v[i == 0 ? v.size() - 1 : i - 1]})
+                        if (q > point) ends.emplace_back(q, f < internalFaces);
+                }
+            }
+            std::sort(ends.begin(), ends.end());
+            for (Index i = 0; i < ends.size(); ++i) {
+                if (i > 0 && ends[i].first == ends[i - 1].first) continue;
+                ++part.all;
+                if (!ends[i].second) continue; // the boundary faces of an edge sort first
+                const int boundaryPoints = onBoundary[p] + onBoundary[Index(ends[i].first)];
+                ++part.internal;
+                part.onePoint += boundaryPoints == 1 ? 1 : 0;
+                part.twoPoints += boundaryPoints == 2 ? 1 : 0;
+            }
+        }
+    });
+    MeshStatistics& s = m.report.statistics;
+    s.internalPoints = internal;
+    s.edges = total.all, s.internalEdges = total.internal;
+    s.internalEdgesOnePoint = total.onePoint, s.internalEdgesTwoPoints = total.twoPoints;
+}
+
+} // namespace
+
+void measurePoints(Measurement& m, const Rows& pointFaces) {
+    const PolyMesh& mesh = m.mesh;
+    orderedLoop(mesh.points.size(), m.tallies.unusedPoints, [&](Index begin, Index end, Tally& part) {
+        for (Index p = begin; p < end; ++p)
+            if (pointFaces[static_cast<std::int32_t>(p)].empty()) part.hit(static_cast<std::int32_t>(p));
+    });
+    m.report.unusedPoints = m.tallies.unusedPoints.count;
+    countEdges(m, pointFaces);
+    markNear(mesh.points, nearDistanceSquared(m.report.box), m.shortPoints);
+    Tally near = tallyMarks(m.shortPoints);
+    if (near.count > m.report.shortEdgePoints) m.tallies.nearPoints = std::move(near);
+    m.shortPoints = {};
+}
+
+} // namespace i2b

@@ -1,0 +1,56 @@
+// The steps of measureQuality. Each fills its part of the report and of the tallies; measure.cpp puts them in
+// order.
+#pragma once
+#include "i2b/quality/mesh_geometry.h"
+#include "i2b/quality/quality_report.h"
+#include "i2b/quality/tally.h"
+
+namespace i2b {
+
+// Of what fails a check, under the names of checkMesh's sets, in its order.
+struct QualityTallies {
+    Tally illegalCells, unusedPoints, upperTriangularFace, outOfRangeFaces, zipUpCells, edgeFaces;
+    Tally oneInternalFaceCells, twoInternalFacesCells, multiRegionPoints, nonManifoldPoints;
+    Tally nonAlignedEdges, nonClosedCells, highAspectRatioCells, zeroAreaFaces, zeroVolumeCells,
+        nonOrthoFaces;
+    Tally wrongOrientedFaces, skewFaces, lowQualityTetFaces, shortEdges, nearPoints, concaveFaces,
+        warpedFaces;
+    Tally underdeterminedCells, concaveCells, lowWeightFaces, lowVolRatioFaces;
+};
+
+struct Measurement {
+    const PolyMesh& mesh;
+    const QualityLimits& limits;
+    Rows cellFaces;
+    MeshGeometry geometry;
+    QualityTallies tallies;
+    QualityReport report;
+    std::vector<std::uint8_t> shortPoints; // per point: 1 at the end of a short edge
+};
+
+// Of single faces: geometry.faceCentre and faceArea, areas, flatness, angles, repeated vertices, edge
+// lengths.
+void measureFaces(Measurement& m);
+// Of single cells: cellCentre and cellVolume, closedness, aspect ratio, determinant, concavity, shape, edge
+// use.
+void measureCells(Measurement& m);
+// Of faces with the cells at their sides: orthogonality, pyramids, skewness, weights, volume ratio,
+// tetrahedra.
+void measureFaceCells(Measurement& m);
+
+void measureDirections(Measurement& m); // empty and wedge patches; needs faceArea
+void measureAlignment(Measurement& m);  // of edges, where a direction is empty; needs the directions
+void measurePoints(Measurement& m,
+                   const Rows& pointFaces); // unused, internal, near points (after measureFaces); edges
+void measureFaceFaces(Measurement& m, const Rows& pointFaces); // pairs of faces that share points oddly
+void measureRegions(Measurement& m);
+void measurePatches(Measurement& m);
+void measureZones(Measurement& m); // needs cellVolume
+
+// 1.0e-6 of the diagonal, squared: closer points are near, shorter edges are short.
+double nearDistanceSquared(const Box& box);
+
+// tally of the marked items
+Tally tallyMarks(const std::vector<std::uint8_t>& marks);
+
+} // namespace i2b
