@@ -1,0 +1,24 @@
+// Case files: TOML whose keys are the options of the command line without their dashes.
+//
+//   geometry = ["body.stl", "wheels.obj"]
+//   size = 0.01
+//   seed = [{ name = "air", place = [0, 0, 2] }]    # or [0, 0, 2], or [[0, 0, 2], [1, 0, 2]]
+//   part-size = [{ part = "wheel.*", size = 0.005 }]
+//   box-size = [{ box = [0, -1, 0, 4, 1, 1], size = 0.02 }]
+#pragma once
+#include "i2b/program/settings.h"
+#include <string>
+#include <string_view>
+
+namespace i2b {
+
+// Throws Error (usage) naming file, line and key: no such file, not TOML, an unknown key, a value of the
+// wrong type.
+Case readCaseFile(const std::string& path);
+// As readCaseFile(), from text; path is for messages and for the folder that geometry is relative to.
+Case parseCase(std::string_view text, const std::string& path);
+
+// The complete case file: every key with its meaning. parseCase() of it gives the same options again.
+std::string formatCase(const Case& given);
+
+} // namespace i2b

@@ -1,0 +1,266 @@
+#include "i2b/program/command_line.h"
+#include "i2b/core/error.h"
+#include "i2b/program/case_file.h"
+#include <charconv>
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <functional>
+#include <map>
+
+namespace i2b {
+namespace {
+
+[[noreturn]] void refuse(const std::string& option, const std::string& what, const std::string& remedy) {
+    throw Error(ErrorKind::usage, what, option, remedy);
+}
+
+bool isNumber(std::string_view text) {
+    if (text.starts_with('+')) text.remove_prefix(1);
+    double value = 0;
+    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return fault == std::errc() && end == text.data() + text.size();
+}
+
+double toNumber(const std::string& option, const std::string& text) {
+    if (!isNumber(text)) refuse(option, fmt::format("'{}' is no number", text), "give a number");
+    return std::stod(text);
+}
+
+std::vector<double> toNumbers(const std::string& option, const std::string& text, std::size_t count) {
+    std::vector<double> numbers;
+    for (const std::string& item : CLI::detail::split(text, ',')) numbers.push_back(toNumber(option, item));
+    if (numbers.size() != count)
+        refuse(option, fmt::format("{} numbers where {} are needed", numbers.size(), count),
+               fmt::format("give {} numbers", count));
+    return numbers;
+}
+
+Box toBox(const std::vector<double>& v) { return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}}; }
+
+// "--seed 0 -1 .5" becomes "--seed=0,-1,.5", and "--size -1" "--size=-1": no number is then taken for an
+// option or a file, and --seed may take one text or three numbers without swallowing the geometry behind it.
+std::vector<std::string> joinNumbers(const std::vector<std::string>& arguments) {
+    const std::map<std::string, std::size_t, std::less<>> counts{
+        {"--seed", 3}, {"--box", 6}, {"--box-size", 7}};
+    std::vector<std::string> joined;
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+        joined.push_back(arguments[i]);
+        if (!arguments[i].starts_with("--") || arguments[i].find('=') != std::string::npos) continue;
+        const auto wanted = counts.find(arguments[i]);
+        const std::size_t most = wanted == counts.end() ? 1 : wanted->second;
+        std::vector<std::string> numbers;
+        while (numbers.size() < most && i + 1 < arguments.size() && isNumber(arguments[i + 1]))
+            numbers.push_back(arguments[++i]);
+        if (!numbers.empty()) joined.back() += fmt::format("={}", fmt::join(numbers, ","));
+    }
+    return joined;
+}
+
+using Edit = std::function<void(Case&)>;
+using Edits = std::vector<std::pair<std::string, Edit>>; // key, what it does to the case
+
+// The text after an option to the change it stands for; complains at once, applied after the case file is
+// read.
+Edit toEdit(const Setting& setting, const std::string& text) {
+    const std::string option = fmt::format("--{}", setting.key);
+    const auto assign = [](auto field, auto value) { return [=](Case& c) { field(c) = value; }; };
+    struct Visitor {
+        const std::string &option, &text;
+        const decltype(assign)& set;
+        Edit operator()(FieldOf<double> f) const { return set(f, toNumber(option, text)); }
+        Edit operator()(FieldOf<int> f) const {
+            int value = 0;
+            const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+            if (fault != std::errc() || end != text.data() + text.size())
+                refuse(option, fmt::format("'{}' is no whole number", text), "give a whole number");
+            return set(f, value);
+        }
+        Edit operator()(FieldOf<bool> f) const { return set(f, text != "false"); }
+        Edit operator()(FieldOf<std::string> f) const { return set(f, text); }
+        Edit operator()(FieldOf<std::vector<std::string>> f) const {
+            return set(f, CLI::detail::split(text, ','));
+        }
+        Edit operator()(FieldOf<std::optional<Box>> f) const {
+            return set(f, std::optional<Box>(toBox(toNumbers(option, text, 6))));
+        }
+        Edit operator()(FieldOf<std::vector<PartSize>> f) const {
+            const std::size_t equals = text.rfind('=');
+            if (equals == std::string::npos) refuse(option, "a size is missing", "write PART=D");
+            const PartSize value{text.substr(0, equals), toNumber(option, text.substr(equals + 1))};
+            return [=](Case& c) { f(c).push_back(value); };
+        }
+        Edit operator()(FieldOf<std::vector<BoxSize>> f) const {
+            const auto v = toNumbers(option, text, 7);
+            return [=](Case& c) { f(c).push_back({toBox(v), v[6]}); };
+        }
+        Edit operator()(FieldOf<std::vector<Seed>> f) const {
+            const std::size_t equals = text.find('=');
+            const auto v = toNumbers(option, equals == std::string::npos ? text : text.substr(equals + 1), 3);
+            const Seed value{equals == std::string::npos ? "" : text.substr(0, equals), {v[0], v[1], v[2]}};
+            return [=](Case& c) { f(c).push_back(value); };
+        }
+        Edit operator()(FlowChoice choice) const {
+            return [=, on = text != "false"](Case& c) {
+                Flow& flow = c.options.domain.flow;
+                if (on)
+                    flow = choice.value;
+                else if (flow == choice.value)
+                    flow = Flow::automatic;
+            };
+        }
+    };
+    return std::visit(Visitor{option, text, assign}, setting.field);
+}
+
+// The default as the help shows it; nothing where it says nothing.
+std::string defaultOf(const Setting& setting) {
+    Case fresh;
+    if (const auto* const f = std::get_if<FieldOf<double>>(&setting.field))
+        return fmt::format("{}", (*f)(fresh));
+    if (const auto* const f = std::get_if<FieldOf<int>>(&setting.field))
+        return fmt::format("{}", (*f)(fresh));
+    if (const auto* const f = std::get_if<FieldOf<std::string>>(&setting.field)) return (*f)(fresh);
+    if (const auto* const f = std::get_if<FieldOf<std::vector<std::string>>>(&setting.field))
+        return fmt::format("{}", fmt::join((*f)(fresh), ","));
+    return "";
+}
+
+void addSetting(CLI::App& app, const Setting& setting, Edits& edits) {
+    const std::string name = fmt::format("--{}", setting.key);
+    const auto record = [&edits, &setting](const std::string& text) {
+        edits.emplace_back(setting.key, toEdit(setting, text));
+    };
+    if (setting.value.empty()) {
+        app.add_flag_function(
+            name, [record](std::int64_t count) { record(count > 0 ? "true" : "false"); },
+            std::string(setting.help));
+        return;
+    }
+    const std::string fallback = defaultOf(setting);
+    CLI::Option* const option = app.add_option_function<std::vector<std::string>>(
+        name,
+        [record](const std::vector<std::string>& texts) {
+            for (const auto& t : texts) record(t);
+        },
+        std::string(setting.help) +
+            (fallback.empty() || setting.key == "size" ? "" : fmt::format(" [{}]", fallback)));
+    option->type_name(std::string(setting.value))->expected(1)->allow_extra_args(false);
+    if (!setting.field.valueless_by_exception() &&
+        (std::holds_alternative<FieldOf<std::vector<Seed>>>(setting.field) ||
+         std::holds_alternative<FieldOf<std::vector<PartSize>>>(setting.field) ||
+         std::holds_alternative<FieldOf<std::vector<BoxSize>>>(setting.field)))
+        option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    else
+        option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+}
+
+struct Parser {
+    CLI::App app{"Polyhedral CFD meshes from dirty geometry, from the interior to the boundary."};
+    CommandLine line;
+    std::vector<std::string> files;
+    Edits edits;
+
+    CLI::App& command(const std::string& name, const std::string& help, Command which) {
+        CLI::App& sub = *app.add_subcommand(name, help);
+        sub.callback([this, which] { line.command = which; });
+        return sub;
+    }
+
+    void addMesher(const std::string& name, const std::string& help, Command which) {
+        CLI::App& sub = command(name, help, which);
+        sub.add_option("files", files, "CASE.toml, or the geometry files")->type_name("FILE");
+        for (const Setting& setting : settings())
+            if (setting.key != "geometry") addSetting(sub, setting, edits);
+        sub.get_option("--external")->excludes("--internal");
+        sub.add_flag("--write-case", line.writeCase,
+                     "Print the complete case file for this command line and stop");
+    }
+
+    void addShared(CLI::App& sub, std::initializer_list<const char*> keys) {
+        for (const char* key : keys) addSetting(sub, *findSetting(key), edits);
+    }
+
+    Parser() {
+        app.require_subcommand(1);
+        app.failure_message(CLI::FailureMessage::simple);
+        app.set_version_flag("--version", "i2b 0.1.0");
+        addMesher("mesh", "Make the whole mesh", Command::mesh);
+        addMesher("grid", "Make the Cartesian grid alone and write grid.vdb", Command::grid);
+        addMesher("regions", "Show what would be painted: regions, seeds, leaks", Command::regions);
+        CLI::App& inspect = command("inspect", "Show what the geometry holds", Command::inspect);
+        inspect.add_option("files", files, "The geometry files")->type_name("FILE")->required();
+        addShared(inspect, {"scale", "feature-angle", "threads"});
+        CLI::App& check = command("check", "Measure the quality of any OpenFOAM polyMesh", Command::check);
+        check.add_option("case", line.caseFolder, "The OpenFOAM case, or its polyMesh folder")->required();
+        check.add_option("--geometry", files, "Measure also how well the walls fit these files")
+            ->type_name("FILE...");
+        addShared(check, {"scale", "feature-angle", "threads"});
+        CLI::App& sample =
+            command("sample", "Write a built-in geometry; without a name, list them", Command::sample);
+        sample.add_option("name", line.sample, "Its name");
+        sample.add_option("-o,--out", line.sampleFile, "The STL file to write")->type_name("FILE");
+    }
+
+    // Files to geometry or case file, then the command line's changes on top.
+    void resolve() {
+        const auto isCase = [](const std::string& f) { return f.ends_with(".toml"); };
+        const auto caseFiles = std::ranges::count_if(files, isCase);
+        const bool mesher = line.command == Command::mesh || line.command == Command::grid ||
+                            line.command == Command::regions;
+        if (caseFiles > 0 && !mesher)
+            refuse(files.front(), "a case file is no geometry", "name geometry files");
+        if (caseFiles > 0 && files.size() > 1)
+            refuse("command line", "a case file and other files together",
+                   "name one case file, or geometry files alone");
+        if (caseFiles == 1)
+            line.given = readCaseFile(files.front());
+        else
+            line.given.options.geometry.files = files;
+        // A list given on the command line replaces the case file's.
+        for (const auto& [key, edit] : edits) {
+            if (line.given.lines.erase(key) == 0) continue;
+            SizeOptions& size = line.given.options.size;
+            if (key == "seed") line.given.options.domain.seeds.clear();
+            if (key == "part-size") size.parts.clear();
+            if (key == "box-size") size.boxes.clear();
+        }
+        // So does a choice of flow: a seed asked for here is not refused because the file says external.
+        for (const auto& [key, edit] : edits) {
+            DomainOptions& domain = line.given.options.domain;
+            if (key == "seed" && line.given.lines.erase("external") + line.given.lines.erase("internal") > 0)
+                domain.flow = Flow::automatic;
+            if ((key == "external" || key == "internal") && line.given.lines.erase("seed") > 0)
+                domain.seeds.clear();
+        }
+        for (const auto& [key, edit] : edits) edit(line.given);
+    }
+};
+
+} // namespace
+
+CommandLine parseCommandLine(const std::vector<std::string>& arguments) {
+    Parser parser;
+    std::vector<std::string> reversed = joinNumbers(arguments);
+    std::ranges::reverse(reversed); // CLI11 takes them from the back
+    try {
+        parser.app.parse(reversed);
+    } catch (const CLI::CallForAllHelp&) {
+        parser.line.text = parser.app.help("", CLI::AppFormatMode::All);
+    } catch (const CLI::CallForVersion& version) {
+        parser.line.text = std::string(version.what()) + "\n";
+    } catch (const CLI::CallForHelp&) {
+        parser.line.text = parser.app.help();
+    } catch (const CLI::ParseError& fault) {
+        const auto subs = parser.app.get_subcommands();
+        throw Error(ErrorKind::usage, fault.what(), "command line",
+                    fmt::format("see i2b {}--help", subs.empty() ? "" : subs.front()->get_name() + " "));
+    }
+    if (!parser.line.text.empty())
+        parser.line.command = Command::help;
+    else
+        parser.resolve();
+    return std::move(parser.line);
+}
+
+} // namespace i2b

@@ -1,0 +1,24 @@
+// What a command line asks for. Options given on it override those of its case file.
+#pragma once
+#include "i2b/program/settings.h"
+#include <string>
+#include <vector>
+
+namespace i2b {
+
+enum class Command { help, mesh, grid, regions, inspect, check, sample };
+
+struct CommandLine {
+    Command command = Command::help;
+    std::string text;       // help: what to print
+    Case given;             // mesh, grid, regions; inspect and check use its geometry, threads and quiet
+    bool writeCase = false; // mesh, grid, regions: print the case file instead of running
+    std::string caseFolder; // check: an OpenFOAM case
+    std::string sample;     // sample: the name of a built-in geometry; empty: list them
+    std::string sampleFile; // sample: the file to write
+};
+
+// arguments without the program's name. Reads the case file if one is named. Throws Error (usage).
+CommandLine parseCommandLine(const std::vector<std::string>& arguments);
+
+} // namespace i2b

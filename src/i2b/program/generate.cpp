@@ -1,0 +1,152 @@
+#include "i2b/program/generate.h"
+#include "i2b/assemble/assemble.h"
+#include "i2b/carve/carve.h"
+#include "i2b/core/checksum.h"
+#include "i2b/core/error.h"
+#include "i2b/core/memory.h"
+#include "i2b/fit/fit.h"
+#include "i2b/front/front.h"
+#include "i2b/grid/build.h"
+#include "i2b/grid/cut.h"
+#include "i2b/grid/mask_ops.h"
+#include "i2b/layers/layer_stack.h"
+#include "i2b/paint/paint.h"
+#include "i2b/quality/repair.h"
+#include <fmt/format.h>
+
+namespace i2b {
+namespace {
+
+// Runs one stage under its name; count(result) is the number of items it reports.
+template <class Body, class Count>
+auto stage(Context& context, const char* name, const Body& body, const Count& count) {
+    Stage timed(context, name);
+    auto result = body();
+    timed.items = static_cast<std::uint64_t>(count(result));
+    return result;
+}
+
+void refuseTooLarge(const Surface& surface, const SizeField& field, int layers, bool gridOnly) {
+    const double need = estimateBytes(surface, field, layers, gridOnly);
+    const auto have = static_cast<double>(availableBytes());
+    if (need <= have) return;
+    throw Error(ErrorKind::input, fmt::format("this mesh would need about {:.1f} GB of memory", need * 1e-9),
+                fmt::format("{:.1f} GB are free", have * 1e-9),
+                "give a larger --size, a smaller --box, or run it on a larger machine");
+}
+
+void requireValid(const std::string& fault, const char* what) {
+    if (!fault.empty())
+        throw Error(ErrorKind::internal, fmt::format("{}: {}", what, fault), "", "please report the case");
+}
+
+} // namespace
+
+std::unique_ptr<GridResult> generateGrid(const Options& options, Context& context, bool carveCells) {
+    auto out = std::make_unique<GridResult>();
+    GridResult& r = *out;
+    r.surface = stage(
+        context, "read", [&] { return readSurface(options.geometry.files, options.geometry.scale, r.notes); },
+        [](const Surface& s) { return s.triangles.size(); });
+    r.field = stage(
+        context, "size", [&] { return makeSizeField(r.surface, options.size, options.domain); },
+        [](const SizeField& f) { return f.lattice.maxLevel + 1; });
+    refuseTooLarge(r.surface, r.field, options.layers.count, !carveCells);
+    r.index = stage(
+        context, "index", [&] { return std::make_unique<SurfaceIndex>(r.surface); },
+        [&](const auto&) { return r.surface.triangles.size(); });
+    std::vector<Mask::Ptr> wanted;
+    r.grid = stage(
+        context, "grid",
+        [&] {
+            std::vector<Mask::Ptr> atTarget = cutAtTargetLevels(r.surface, r.field);
+            const std::vector<Mask::Ptr> boxes = wantedByBoxes(r.field);
+            for (std::size_t l = 0; l < boxes.size(); ++l)
+                wanted.push_back(boxes[l]->empty() ? atTarget[l] : unionOf(*atTarget[l], *boxes[l]));
+            CellGrid grid = buildCellGrid(r.field, wanted);
+            r.cut = cutLeafCells(r.surface, r.field, grid, atTarget);
+            return grid;
+        },
+        [](const CellGrid& g) { return g.cellCount(); });
+    wanted.clear();
+    r.regions = stage(
+        context, "paint",
+        [&] {
+            Regions regions = labelRegions(r.grid, r.cut);
+            chooseRegions(regions, r.grid, r.cut, options.domain);
+            return regions;
+        },
+        [](const Regions& regions) { return regions.table.size(); });
+    if (!carveCells) return out;
+    r.kept = stage(
+        context, "carve", [&] { return carve(r.grid, r.cut, r.regions, *r.index, options.fit); },
+        [](const KeptCells& k) { return k.cellCount(); });
+    return out;
+}
+
+MeshResult generate(const Options& options, Context& context) {
+    MeshResult out;
+    out.cartesian = generateGrid(options, context);
+    const GridResult& c = *out.cartesian;
+    const auto lattice = std::make_unique<LatticeMesh>(c.grid, c.kept);
+    Front front = stage(
+        context, "front", [&] { return buildFront(*lattice, startThickness); },
+        [](const Front& f) { return f.ownerCell.size(); });
+    requireValid(front.validate(), "front");
+    out.features = stage(
+        context, "features",
+        [&] {
+            FeatureOptions f;
+            f.angle = options.geometry.featureAngle;
+            return buildFeatureGraph(c.surface, f);
+        },
+        [](const FeatureGraph& f) { return f.edges.size(); });
+    stage(
+        context, "fit",
+        [&] { return fitFront(front, *lattice, *c.index, out.features, options.fit, context); },
+        [](const FitSummary& s) { return s.wallNodes; });
+    assignParts(front, *c.index);
+    LayerStack layers = stage(
+        context, "layers", [&] { return makeLayers(front, options.layers); },
+        [&](const LayerStack& l) { return front.ownerCell.size() * static_cast<std::size_t>(l.count); });
+    const AssembleInput input{*lattice, c.kept, front, layers, c.surface.parts};
+    out.mesh = stage(
+        context, "assemble", [&] { return assemble(input); }, [](const PolyMesh& m) { return m.cells; });
+    out.report = reportOf(c, options, context);
+    out.report.quality = stage(
+        context, "quality", [&] { return measureQuality(out.mesh); },
+        [](const QualityReport& q) { return q.cells; });
+    out.report.fit = stage(
+        context, "fit quality", [&] { return measureFit(out.mesh, *c.index, out.features); },
+        [](const FitReport& f) { return f.wallNodes; });
+    out.report.stages = context.stages();
+    out.report.layers =
+        LayerReport{options.layers.count, layers.meanCount, layers.facesCovered, layers.thicknessFraction};
+    out.report.cells = out.mesh.cells;
+    out.report.faces = out.mesh.faces();
+    out.report.points = static_cast<std::int64_t>(out.mesh.points.size());
+    out.report.wallFaces = static_cast<std::int64_t>(front.ownerCell.size());
+    out.report.patches = out.mesh.patches;
+    Checksum sum;
+    sum.add(out.mesh.checksum());
+    out.report.checksum = sum.hex();
+    return out;
+}
+
+RunReport reportOf(const GridResult& r, const Options& options, const Context& context) {
+    RunReport report;
+    report.files = options.geometry.files;
+    report.triangles = r.surface.triangles.size();
+    for (const Part& part : r.surface.parts) report.parts.push_back({part.name, part.triangles});
+    report.surfaceSize = options.size.surface;
+    report.minSize = r.field.minSize;
+    report.maxSize = r.field.lattice.h(0);
+    report.levels = r.field.lattice.maxLevel;
+    report.stages = context.stages();
+    report.cells = static_cast<std::int64_t>(r.grid.cellCount());
+    report.regions = r.regions.table;
+    report.leaks = r.regions.leaks;
+    return report;
+}
+
+} // namespace i2b

@@ -1,0 +1,47 @@
+// The whole road, from options to a mesh in memory: reads as the table of stages. Files are read by the
+// geometry stage; nothing is written and nothing printed here.
+#pragma once
+#include "i2b/assemble/poly_mesh.h"
+#include "i2b/carve/kept_cells.h"
+#include "i2b/core/context.h"
+#include "i2b/geometry/features.h"
+#include "i2b/geometry/read.h"
+#include "i2b/geometry/surface_index.h"
+#include "i2b/options.h"
+#include "i2b/paint/regions.h"
+#include "i2b/sizing/size_field.h"
+#include "i2b/write/report.h"
+#include <memory>
+
+namespace i2b {
+
+struct GridResult {
+    Surface surface;
+    GeometryNotes notes;
+    std::unique_ptr<SurfaceIndex> index; // of surface; do not move the surface away
+    SizeField field;
+    CellGrid grid;
+    CutCells cut;
+    Regions regions;
+    KeptCells kept; // empty levels where carving was not asked for
+};
+
+struct MeshResult {
+    std::unique_ptr<GridResult> cartesian;
+    FeatureGraph features;
+    PolyMesh mesh;
+    RunReport report; // all but the total time and memory, which the caller knows at its end
+};
+
+// The Cartesian stages. carveCells false: regions are labelled and chosen, nothing is carved (for `regions`,
+// where no region need be choosable).
+std::unique_ptr<GridResult> generateGrid(const Options& options, Context& context, bool carveCells = true);
+
+// The whole mesh: valid (PolyMesh::validate() is empty, no cell of negative volume, no face of wrong
+// orientation) or an Error that says what, where and what to do.
+MeshResult generate(const Options& options, Context& context);
+
+// What a run of the Cartesian stages alone can report.
+RunReport reportOf(const GridResult& result, const Options& options, const Context& context);
+
+} // namespace i2b

@@ -1,0 +1,139 @@
+#include "i2b/program/options.h"
+#include "i2b/core/error.h"
+#include <fmt/format.h>
+#include <regex>
+
+namespace i2b {
+namespace {
+
+const std::vector<std::string> knownFormats{"openfoam", "vtu", "ply", "vdb", "report"};
+
+struct Checker {
+    std::vector<Problem> problems;
+
+    // Not-a-number fails every range.
+    void within(const char* key, double value, double lo, double hi) {
+        if (!(value >= lo && value <= hi))
+            problems.push_back(
+                {key, fmt::format("{} is {}", key, value), fmt::format("give {} to {}", lo, hi)});
+    }
+    void length(const char* key, double value, const char* zero) {
+        if (!(value >= 0 && std::isfinite(value)))
+            problems.push_back({key, fmt::format("{} is {} m", key, value),
+                                fmt::format("give a positive length in metres, or 0: {}", zero)});
+    }
+    void add(const char* key, std::string text, std::string remedy) {
+        problems.push_back({key, std::move(text), std::move(remedy)});
+    }
+};
+
+bool hasVolume(const Box& box) {
+    return isFinite(box.lo) && isFinite(box.hi) && box.lo.x < box.hi.x && box.lo.y < box.hi.y &&
+           box.lo.z < box.hi.z;
+}
+
+void checkGeometry(const GeometryOptions& geometry, Checker& check) {
+    if (geometry.files.empty()) check.add("geometry", "no geometry is given", "name at least one file");
+    if (!(geometry.scale > 0 && std::isfinite(geometry.scale)))
+        check.add("scale", fmt::format("scale is {}", geometry.scale),
+                  "give metres per unit of the files, for example 0.001 for millimetres");
+    check.within("feature-angle", geometry.featureAngle, 0, 180);
+}
+
+void checkPartSize(const PartSize& part, const SizeOptions& size, Checker& check) {
+    if (!(part.size > 0 && std::isfinite(part.size)))
+        check.add("part-size", fmt::format("the size of part '{}' is {} m", part.part, part.size),
+                  "give a positive length in metres");
+    else if (part.size < size.min)
+        check.add("part-size",
+                  fmt::format("the size of part '{}', {} m, is below min-size", part.part, part.size),
+                  fmt::format("give at least {} m or lower min-size", size.min));
+    try {
+        std::regex(part.part, std::regex::ECMAScript);
+    } catch (const std::regex_error&) {
+        check.add("part-size", fmt::format("'{}' is no regular expression", part.part),
+                  "write the part's whole name, or an expression such as wheel.*");
+    }
+}
+
+void checkSizes(const SizeOptions& size, Checker& check) {
+    if (size.surface == 0)
+        check.add("size", "size is missing",
+                  "give the largest cell on the geometry in metres; a hundredth of its length is a first try "
+                  "(i2b inspect prints the extent)");
+    else if (!(size.surface > 0 && std::isfinite(size.surface)))
+        check.add("size", fmt::format("size is {} m", size.surface), "give a positive length in metres");
+    check.length("max-size", size.max, "from the extent of the domain");
+    check.length("min-size", size.min, "half of size");
+    if (size.max > 0 && size.max < size.surface)
+        check.add("max-size", fmt::format("max-size, {} m, is below size, {} m", size.max, size.surface),
+                  "give at least size, or 0: from the extent of the domain");
+    if (size.min > size.surface && size.surface > 0)
+        check.add("min-size", fmt::format("min-size, {} m, is above size, {} m", size.min, size.surface),
+                  "give at most size, or 0: half of size");
+    for (const PartSize& part : size.parts) checkPartSize(part, size, check);
+    for (const BoxSize& box : size.boxes) {
+        if (!hasVolume(box.box))
+            check.add("box-size", "the box has no volume", "give the lower corner first");
+        if (!(box.size > 0 && std::isfinite(box.size)))
+            check.add("box-size", fmt::format("the size inside is {} m", box.size),
+                      "give a positive length in metres");
+    }
+    check.within("buffer-cells", size.bufferCells, 1, 64);
+}
+
+void checkDomain(const DomainOptions& domain, Checker& check) {
+    if (domain.box && !hasVolume(*domain.box))
+        check.add("box", "the box has no volume", "give the lower corner first: x0 y0 z0 x1 y1 z1");
+    if (domain.flow != Flow::automatic && !domain.seeds.empty())
+        check.add("seed", "seeds and external or internal exclude each other", "give one of the two");
+    for (const Seed& seed : domain.seeds) {
+        const std::string place = fmt::format("{}, {}, {}", seed.place.x, seed.place.y, seed.place.z);
+        if (!isFinite(seed.place))
+            check.add("seed", "the seed at " + place + " is not finite", "give metres");
+        else if (domain.box && !domain.box->contains(seed.place))
+            check.add("seed", "the seed at " + place + " lies outside the box", "move it or enlarge the box");
+    }
+}
+
+void checkOutput(const OutputOptions& output, Checker& check) {
+    if (output.folder.empty()) check.add("out", "out is empty", "name a folder");
+    for (const std::string& format : output.formats)
+        if (std::ranges::find(knownFormats, format) == knownFormats.end())
+            check.add("format", fmt::format("'{}' is no format", format),
+                      fmt::format("choose from {}", fmt::join(knownFormats, ", ")));
+}
+
+} // namespace
+
+std::vector<Problem> validate(const Options& options) {
+    Checker check;
+    checkGeometry(options.geometry, check);
+    checkSizes(options.size, check);
+    checkDomain(options.domain, check);
+    check.within("clearance", options.fit.clearance, 0, 1);
+    check.within("sweeps", options.fit.sweeps, 0, 100);
+    check.within("layers", options.layers.count, 0, 100);
+    check.length("first-layer", options.layers.first, "from the room and the growth");
+    check.within("growth", options.layers.growth, 0.5, 4);
+    checkOutput(options.output, check);
+    check.within("threads", options.threads, 0, 4096);
+    return check.problems;
+}
+
+void requireValid(const Case& given) {
+    const std::vector<Problem> problems = validate(given.options);
+    if (problems.empty()) return;
+    const auto place = [&](const std::string& key) {
+        const auto line = given.lines.find(key);
+        if (line != given.lines.end()) return fmt::format("{}:{}, key {}", given.file, line->second, key);
+        return key == "geometry" ? std::string("command line") : "--" + key;
+    };
+    // The first problem is the error; the others follow in its remedy, so that one run names them all.
+    std::string remedy = problems.front().remedy;
+    for (std::size_t i = 1; i < problems.size(); ++i)
+        remedy += fmt::format("\n{} ({}): {}", problems[i].text, place(problems[i].key), problems[i].remedy);
+    throw Error(ErrorKind::usage, problems.front().text, place(problems.front().key), remedy);
+}
+
+} // namespace i2b

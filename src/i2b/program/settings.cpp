@@ -1,0 +1,91 @@
+#include "i2b/program/settings.h"
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+namespace i2b {
+namespace {
+
+using Texts = std::vector<std::string>;
+
+#define I2B_FIELD(type, member) FieldOf<type>([](Case& c) -> type& { return c.member; })
+
+const std::array table{
+    Setting{"geometry", "FILE...", "Files of triangles; in a case file, relative to its folder",
+            I2B_FIELD(Texts, options.geometry.files)},
+    Setting{"scale", "S", "Metres per unit of the geometry files; every other length is in metres after it",
+            I2B_FIELD(double, options.geometry.scale)},
+    Setting{"size", "D", "Largest cell that meets the geometry, m; the only length ever required",
+            I2B_FIELD(double, options.size.surface)},
+    Setting{"max-size", "D", "Largest cell anywhere, m; 0: from the extent of the domain",
+            I2B_FIELD(double, options.size.max)},
+    Setting{"min-size", "D", "Smallest cell, and the size of holes that are closed, m; 0: half of size",
+            I2B_FIELD(double, options.size.min)},
+    Setting{"part-size", "PART=D", "Largest cell that meets a part (whole name or regular expression), m",
+            I2B_FIELD(std::vector<PartSize>, options.size.parts)},
+    Setting{"box-size", "X0 Y0 Z0 X1 Y1 Z1 D", "Largest cell inside a box, m",
+            I2B_FIELD(std::vector<BoxSize>, options.size.boxes)},
+    Setting{"buffer-cells", "N", "Cells of each size between the next finer and the next coarser",
+            I2B_FIELD(int, options.size.bufferCells)},
+    Setting{"box", "X0 Y0 Z0 X1 Y1 Z1", "The domain, m; without it, a box from the extent of the geometry",
+            I2B_FIELD(std::optional<Box>, options.domain.box)},
+    Setting{"external", "", "Mesh what lies around the geometry, up to the box; the default without seeds",
+            FlowChoice{Flow::external}},
+    Setting{"internal", "", "Mesh what the geometry encloses", FlowChoice{Flow::internal}},
+    Setting{"seed", "[NAME=]X,Y,Z | X Y Z", "A place in the flow, m, and the name of its zone; repeatable",
+            I2B_FIELD(std::vector<Seed>, options.domain.seeds)},
+    Setting{"feature-angle", "DEG",
+            "Angle between two triangles above which their edge is kept sharp; 180: none",
+            I2B_FIELD(double, options.geometry.featureAngle)},
+    Setting{"clearance", "F", "Room between the Cartesian cells and the geometry, in cell edges",
+            I2B_FIELD(double, options.fit.clearance)},
+    Setting{"sweeps", "N", "Sweeps of smoothing and projection of the wall",
+            I2B_FIELD(int, options.fit.sweeps)},
+    Setting{"layers", "N", "Prism layers on every wall face", I2B_FIELD(int, options.layers.count)},
+    Setting{"first-layer", "H", "Height of the layer at the wall, m; 0: from the room and the growth",
+            I2B_FIELD(double, options.layers.first)},
+    Setting{"growth", "R", "Ratio of the heights of one layer and the next towards the wall",
+            I2B_FIELD(double, options.layers.growth)},
+    Setting{"format", "F,F,...", "What to write: openfoam, vtu, ply, vdb, report",
+            I2B_FIELD(Texts, options.output.formats)},
+    Setting{"ascii", "", "Write the OpenFOAM mesh as text instead of binary",
+            I2B_FIELD(bool, options.output.ascii)},
+    Setting{"out", "DIR", "Folder for the results", I2B_FIELD(std::string, options.output.folder)},
+    Setting{"threads", "N", "Threads to use; 0: all the machine has", I2B_FIELD(int, options.threads)},
+    Setting{"quiet", "", "Print nothing but errors", I2B_FIELD(bool, quiet)},
+};
+
+#undef I2B_FIELD
+
+// Levenshtein's distance, one row at a time.
+std::size_t editDistance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t(0));
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = row[0]++;
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t substituted = diagonal + (a[i] != b[j]);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({substituted, row[j] + 1, row[j + 1] + 1});
+        }
+    }
+    return row.back();
+}
+
+} // namespace
+
+std::span<const Setting> settings() { return table; }
+
+const Setting* findSetting(std::string_view key) {
+    const auto* const found = std::ranges::find(table, key, &Setting::key);
+    return found == table.end() ? nullptr : found;
+}
+
+std::string_view nearestKey(std::string_view key) {
+    const auto* const best =
+        std::ranges::min_element(table, {}, [&](const Setting& s) { return editDistance(s.key, key); });
+    return editDistance(best->key, key) <= std::max<std::size_t>(2, key.size() / 3) ? best->key
+                                                                                    : std::string_view{};
+}
+
+} // namespace i2b

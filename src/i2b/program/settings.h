@@ -1,0 +1,48 @@
+// Every option of a run, once: its key (the same word in a case file and, with "--", on the command line),
+// what it means, and the field it sets. Reading and writing case files, the command line, its help and the
+// README's table all go over this list.
+#pragma once
+#include "i2b/options.h"
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace i2b {
+
+// A run as asked for: the options of the library, what only the program needs, and where each key was set.
+struct Case {
+    Options options;
+    bool quiet = false;
+    std::string file;                 // the case file read; empty without one
+    std::map<std::string, int> lines; // of the keys that the file sets, from 1
+};
+
+template <class T>
+using FieldOf = T& (*)(Case&);
+
+struct FlowChoice {
+    Flow value; // the setting is true where DomainOptions::flow is this
+};
+
+using Field = std::variant<FieldOf<double>, FieldOf<int>, FieldOf<bool>, FieldOf<std::string>,
+                           FieldOf<std::vector<std::string>>, FieldOf<std::vector<PartSize>>,
+                           FieldOf<std::vector<BoxSize>>, FieldOf<std::vector<Seed>>,
+                           FieldOf<std::optional<Box>>, FlowChoice>;
+
+struct Setting {
+    std::string_view key;
+    std::string_view value; // what follows the option on the command line; empty for a switch
+    std::string_view help;  // with the unit
+    Field field;
+};
+
+// In the order of the case file.
+std::span<const Setting> settings();
+const Setting* findSetting(std::string_view key);
+// The known key that a misspelt one most likely means; empty if none is near.
+std::string_view nearestKey(std::string_view key);
+
+} // namespace i2b

@@ -1,0 +1,160 @@
+#include "i2b/core/error.h"
+#include "i2b/program/case_file.h"
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <gmock/gmock.h>
+
+namespace i2b {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+// Every field away from its default, with numbers that need all their digits.
+Case everything() {
+    Case c;
+    Options& o = c.options;
+    o.geometry = {{"a \"quoted\".stl", "dir/b.obj"}, 0.001, 1.0 / 3};
+    o.size.surface = 0.1;
+    o.size.max = 1e22;
+    o.size.min = 1e-7;
+    o.size.parts = {{"wheel.*", 0.05}, {"fin\\d", 2}};
+    o.size.boxes = {{{{-1, -2, -3}, {4, 5, 6.5}}, 0.25}};
+    o.size.bufferCells = 5;
+    o.domain.box = Box{{-1.5, 0, 0}, {1, 2, 3}};
+    o.domain.flow = Flow::internal;
+    o.domain.seeds = {{"jacket", {0.1, -0.2, 0.3}}, {"", {1, 2, 3}}};
+    o.fit = {0.2, 7};
+    o.layers = {3, 1e-4, 1.35};
+    o.output = {"out/car", {"vtu"}, true};
+    o.threads = 3;
+    c.quiet = true;
+    return c;
+}
+
+// Compared field by field: the text form alone could hide what it leaves out.
+void expectSame(const Options& a, const Options& b) {
+    EXPECT_EQ(a.geometry.files, b.geometry.files);
+    EXPECT_EQ(a.geometry.scale, b.geometry.scale);
+    EXPECT_EQ(a.geometry.featureAngle, b.geometry.featureAngle);
+    EXPECT_EQ(a.size.surface, b.size.surface);
+    EXPECT_EQ(a.size.max, b.size.max);
+    EXPECT_EQ(a.size.min, b.size.min);
+    EXPECT_EQ(a.size.bufferCells, b.size.bufferCells);
+    ASSERT_EQ(a.size.parts.size(), b.size.parts.size());
+    for (std::size_t i = 0; i < a.size.parts.size(); ++i) {
+        EXPECT_EQ(a.size.parts[i].part, b.size.parts[i].part);
+        EXPECT_EQ(a.size.parts[i].size, b.size.parts[i].size);
+    }
+    ASSERT_EQ(a.size.boxes.size(), b.size.boxes.size());
+    for (std::size_t i = 0; i < a.size.boxes.size(); ++i) {
+        EXPECT_EQ(a.size.boxes[i].box, b.size.boxes[i].box);
+        EXPECT_EQ(a.size.boxes[i].size, b.size.boxes[i].size);
+    }
+    EXPECT_EQ(a.domain.box, b.domain.box);
+    EXPECT_EQ(a.domain.flow, b.domain.flow);
+    ASSERT_EQ(a.domain.seeds.size(), b.domain.seeds.size());
+    for (std::size_t i = 0; i < a.domain.seeds.size(); ++i) {
+        EXPECT_EQ(a.domain.seeds[i].name, b.domain.seeds[i].name);
+        EXPECT_EQ(a.domain.seeds[i].place, b.domain.seeds[i].place);
+    }
+    EXPECT_EQ(a.fit.clearance, b.fit.clearance);
+    EXPECT_EQ(a.fit.sweeps, b.fit.sweeps);
+    EXPECT_EQ(a.layers.count, b.layers.count);
+    EXPECT_EQ(a.layers.first, b.layers.first);
+    EXPECT_EQ(a.layers.growth, b.layers.growth);
+    EXPECT_EQ(a.output.folder, b.output.folder);
+    EXPECT_EQ(a.output.formats, b.output.formats);
+    EXPECT_EQ(a.output.ascii, b.output.ascii);
+    EXPECT_EQ(a.threads, b.threads);
+}
+
+std::string complaint(const std::string& text) {
+    try {
+        parseCase(text, "car.toml");
+    } catch (const Error& error) {
+        EXPECT_EQ(error.exitStatus(), 2);
+        return error.what();
+    }
+    return "accepted";
+}
+
+// What --write-case prints is what was asked for, to the last bit of every number.
+TEST(CaseFile, RoundTripsEveryField) {
+    const Case written = everything();
+    const Case back = parseCase(formatCase(written), "");
+    expectSame(written.options, back.options);
+    EXPECT_TRUE(back.quiet);
+}
+
+// The defaults too, where box is absent and neither flow is chosen.
+TEST(CaseFile, RoundTripsTheDefaults) { expectSame(Options{}, parseCase(formatCase({}), "").options); }
+
+// The complete case file has every key, so that it can serve as the reference of them.
+TEST(CaseFile, WritesEveryKey) {
+    const std::string text = formatCase(everything());
+    for (const Setting& setting : settings())
+        EXPECT_THAT(text, HasSubstr("\n" + std::string(setting.key) + " = ")) << setting.key;
+}
+
+// Geometry is found from anywhere: its names are relative to the case file.
+TEST(CaseFile, GeometryIsRelativeToTheFile) {
+    const Case c = parseCase("geometry = ['a.stl', '/data/b.stl']", "cases/car.toml");
+    EXPECT_THAT(c.options.geometry.files, ::testing::ElementsAre("cases/a.stl", "/data/b.stl"));
+}
+
+// The short forms of lists of one.
+TEST(CaseFile, TakesShortForms) {
+    const Case c = parseCase("geometry = 'a.stl'\nseed = [1, 2, 3.5]\n", "car.toml");
+    EXPECT_EQ(c.options.geometry.files, std::vector<std::string>{"a.stl"});
+    ASSERT_EQ(c.options.domain.seeds.size(), 1u);
+    EXPECT_EQ(c.options.domain.seeds[0].place, (Vec3{1, 2, 3.5}));
+    const Case two = parseCase("seed = [[1, 2, 3], { name = 'b', place = [4, 5, 6] }]", "car.toml");
+    ASSERT_EQ(two.options.domain.seeds.size(), 2u);
+    EXPECT_EQ(two.options.domain.seeds[1].name, "b");
+}
+
+// Each mistake is reported with file, line and key, and with what to write instead.
+TEST(CaseFile, NamesFileLineAndKey) {
+    EXPECT_THAT(complaint("size = 1\nmaxsize = 2\n"),
+                AllOf(HasSubstr("car.toml:2, key maxsize"), HasSubstr("write max-size")));
+    EXPECT_THAT(complaint("\n\nlaundry = 2\n"), AllOf(HasSubstr("car.toml:3"), HasSubstr("--write-case")));
+    EXPECT_THAT(complaint("\nsize = 'big'\n"),
+                AllOf(HasSubstr("car.toml:2, key size"), HasSubstr("string"), HasSubstr("a number")));
+    EXPECT_THAT(complaint("layers = 1.5"), AllOf(HasSubstr("key layers"), HasSubstr("a whole number")));
+    EXPECT_THAT(complaint("layers = 9999999999"), HasSubstr("a whole number"));
+    EXPECT_THAT(complaint("ascii = 1"), AllOf(HasSubstr("key ascii"), HasSubstr("true or false")));
+    EXPECT_THAT(complaint("out = 3"), HasSubstr("a text in quotes"));
+    EXPECT_THAT(complaint("geometry = [1]"), HasSubstr("a text in quotes"));
+    EXPECT_THAT(complaint("format = 1"), HasSubstr("a list"));
+    EXPECT_THAT(complaint("box = [0, 0, 0, 1, 1]"), AllOf(HasSubstr("key box"), HasSubstr("6 numbers")));
+    EXPECT_THAT(complaint("seed = [\n[0, 0, 0],\n[1, 'x', 2]]"),
+                AllOf(HasSubstr("car.toml:3"), HasSubstr("a number")));
+    EXPECT_THAT(complaint("part-size = [{ part = 'a' }]"), HasSubstr("an entry is missing"));
+    EXPECT_THAT(complaint("part-size = [{ part = 'a', size = 1, colour = 2 }]"),
+                HasSubstr("unknown entry 'colour'"));
+    EXPECT_THAT(complaint("box-size = [3]"), HasSubstr("box = ..., size = ..."));
+    EXPECT_THAT(complaint("external = true\ninternal = true"),
+                AllOf(HasSubstr("exclude"), HasSubstr("car.toml:")));
+    EXPECT_THAT(complaint("size = 1\nsize = 2"), HasSubstr("car.toml:2"));
+    EXPECT_THAT(complaint("[size]\nsurface = 1"),
+                AllOf(HasSubstr("car.toml:1, key size"), HasSubstr("table")));
+    EXPECT_THAT(complaint("size = \n"), HasSubstr("car.toml:1"));
+}
+
+// From a file: a missing one is a mistake of the command line, an empty one is an empty case.
+TEST(CaseFile, ReadsFiles) {
+    const auto folder = std::filesystem::temp_directory_path();
+    EXPECT_THROW(readCaseFile((folder / "no such case.toml").string()), Error);
+    EXPECT_THROW(readCaseFile(folder.string()), Error);
+    const auto file = folder / "i2b_case_file_test.toml";
+    std::ofstream(file) << "# nothing\n";
+    EXPECT_EQ(readCaseFile(file.string()).lines.size(), 0u);
+    std::ofstream(file) << "\nsize = 2\n";
+    EXPECT_EQ(readCaseFile(file.string()).lines.at("size"), 2);
+    std::filesystem::remove(file);
+}
+
+} // namespace
+} // namespace i2b

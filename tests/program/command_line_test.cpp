@@ -1,0 +1,223 @@
+#include "i2b/core/error.h"
+#include "i2b/program/case_file.h"
+#include "i2b/program/command_line.h"
+#include "i2b/program/options.h"
+#include <filesystem>
+#include <fstream>
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+namespace i2b {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+using Arguments = std::vector<std::string>;
+
+std::string complaint(const Arguments& arguments) {
+    try {
+        parseCommandLine(arguments);
+    } catch (const Error& error) {
+        EXPECT_EQ(error.exitStatus(), 2);
+        return error.what();
+    }
+    return "accepted";
+}
+
+struct CaseOnDisk {
+    std::string path = (std::filesystem::temp_directory_path() /
+                        ("i2b_command_line_test_" + std::to_string(getpid()) + ".toml"))
+                           .string();
+    explicit CaseOnDisk(const std::string& text) { std::ofstream(path) << text; }
+    ~CaseOnDisk() { std::filesystem::remove(path); }
+};
+
+// Every option arrives in its field, through each of the ways of writing it.
+TEST(CommandLine, SetsEveryOption) {
+    const CommandLine line = parseCommandLine({"mesh",
+                                               "a.stl",
+                                               "b.obj",
+                                               "--size",
+                                               "0.01",
+                                               "--max-size=1",
+                                               "--min-size",
+                                               "5e-3",
+                                               "--scale",
+                                               "0.001",
+                                               "--box",
+                                               "-1",
+                                               "-2",
+                                               "-.5",
+                                               "1",
+                                               "2",
+                                               "3",
+                                               "--internal",
+                                               "--layers",
+                                               "3",
+                                               "--first-layer",
+                                               "1e-4",
+                                               "--growth",
+                                               "1.3",
+                                               "--feature-angle",
+                                               "30",
+                                               "--threads",
+                                               "2",
+                                               "--format",
+                                               "openfoam,vtu",
+                                               "--ascii",
+                                               "--out",
+                                               "here",
+                                               "--quiet",
+                                               "--part-size",
+                                               "wheel=0.2",
+                                               "--part-size",
+                                               "fin.*=0.1",
+                                               "--box-size",
+                                               "0",
+                                               "0",
+                                               "0",
+                                               "1",
+                                               "1",
+                                               "1",
+                                               ".5",
+                                               "--buffer-cells",
+                                               "4",
+                                               "--clearance",
+                                               "0.2",
+                                               "--sweeps",
+                                               "6"});
+    const Options& o = line.given.options;
+    EXPECT_EQ(line.command, Command::mesh);
+    EXPECT_THAT(o.geometry.files, ElementsAre("a.stl", "b.obj"));
+    EXPECT_EQ(o.size.surface, 0.01);
+    EXPECT_EQ(o.size.max, 1);
+    EXPECT_EQ(o.size.min, 0.005);
+    EXPECT_EQ(o.geometry.scale, 0.001);
+    EXPECT_EQ(o.domain.box, (Box{{-1, -2, -0.5}, {1, 2, 3}}));
+    EXPECT_EQ(o.domain.flow, Flow::internal);
+    EXPECT_EQ(o.layers.count, 3);
+    EXPECT_EQ(o.layers.first, 1e-4);
+    EXPECT_EQ(o.layers.growth, 1.3);
+    EXPECT_EQ(o.geometry.featureAngle, 30);
+    EXPECT_EQ(o.threads, 2);
+    EXPECT_THAT(o.output.formats, ElementsAre("openfoam", "vtu"));
+    EXPECT_TRUE(o.output.ascii);
+    EXPECT_EQ(o.output.folder, "here");
+    EXPECT_TRUE(line.given.quiet);
+    ASSERT_EQ(o.size.parts.size(), 2u);
+    EXPECT_EQ(o.size.parts[1].part, "fin.*");
+    EXPECT_EQ(o.size.parts[1].size, 0.1);
+    ASSERT_EQ(o.size.boxes.size(), 1u);
+    EXPECT_EQ(o.size.boxes[0].size, 0.5);
+    EXPECT_EQ(o.size.bufferCells, 4);
+    EXPECT_EQ(o.fit.clearance, 0.2);
+    EXPECT_EQ(o.fit.sweeps, 6);
+    EXPECT_TRUE(validate(o).empty());
+}
+
+// Every setting is an option of the three commands, so that nothing can be said only in a case file.
+TEST(CommandLine, HelpNamesEverySetting) {
+    for (const char* command : {"mesh", "grid", "regions"}) {
+        const CommandLine line = parseCommandLine({command, "--help"});
+        EXPECT_EQ(line.command, Command::help);
+        for (const Setting& setting : settings().subspan(1)) // the first, geometry, is positional
+            EXPECT_THAT(line.text, HasSubstr("--" + std::string(setting.key)));
+    }
+}
+
+// Seeds in both forms, negative, named, and with the geometry behind them: no number or file is taken for
+// another.
+TEST(CommandLine, SeedsDoNotSwallowFiles) {
+    const CommandLine line = parseCommandLine(
+        {"regions", "--seed", "0", "-1", "-.25", "body.stl", "--seed", "air=-1,2,3e-1", "fin.stl"});
+    EXPECT_EQ(line.command, Command::regions);
+    EXPECT_THAT(line.given.options.geometry.files, ElementsAre("body.stl", "fin.stl"));
+    const std::vector<Seed>& seeds = line.given.options.domain.seeds;
+    ASSERT_EQ(seeds.size(), 2u);
+    EXPECT_EQ(seeds[0].name, "");
+    EXPECT_EQ(seeds[0].place, (Vec3{0, -1, -0.25}));
+    EXPECT_EQ(seeds[1].name, "air");
+    EXPECT_EQ(seeds[1].place, (Vec3{-1, 2, 0.3}));
+}
+
+// A negative number is a value (for validate() to judge), never an unknown option.
+TEST(CommandLine, NegativeNumbersAreValues) {
+    EXPECT_EQ(parseCommandLine({"mesh", "a.stl", "--size", "-1"}).given.options.size.surface, -1);
+    EXPECT_EQ(parseCommandLine({"mesh", "a.stl", "--size", "-.5"}).given.options.size.surface, -0.5);
+}
+
+// The command line wins over the case file; what it does not name stays; a list replaces the file's.
+TEST(CommandLine, OverridesTheCaseFile) {
+    const CaseOnDisk file("geometry = 'a.stl'\nsize = 1\nlayers = 4\nexternal = true\nascii = true\n"
+                          "part-size = [{ part = 'w', size = 1 }]\n");
+    const CommandLine line = parseCommandLine(
+        {"mesh", file.path, "--size", "2", "--seed", "1,2,3", "--part-size", "v=3", "--ascii=false"});
+    const Options& o = line.given.options;
+    EXPECT_EQ(o.size.surface, 2);
+    EXPECT_EQ(o.layers.count, 4);
+    EXPECT_EQ(o.domain.flow, Flow::automatic);
+    EXPECT_FALSE(o.output.ascii);
+    ASSERT_EQ(o.size.parts.size(), 1u);
+    EXPECT_EQ(o.size.parts[0].part, "v");
+    EXPECT_EQ(line.given.lines.count("size"), 0u);
+    EXPECT_EQ(line.given.lines.at("layers"), 3);
+    EXPECT_TRUE(validate(o).empty());
+    const CommandLine internal = parseCommandLine({"mesh", file.path, "--internal"});
+    EXPECT_EQ(internal.given.options.domain.flow, Flow::internal);
+}
+
+// What is wrong on the command line is named together with the option.
+TEST(CommandLine, RefusesMistakes) {
+    EXPECT_THAT(complaint({"mesh", "a.stl", "--sise", "1"}),
+                AllOf(HasSubstr("--sise"), HasSubstr("i2b mesh --help")));
+    EXPECT_THAT(complaint({"mesh", "a.stl", "--size", "big"}),
+                AllOf(HasSubstr("'big'"), HasSubstr("--size")));
+    EXPECT_THAT(complaint({"mesh", "a.stl", "--layers", "1.5"}), HasSubstr("--layers"));
+    EXPECT_THAT(complaint({"mesh", "a.stl", "--size"}), HasSubstr("--size"));
+    EXPECT_THAT(complaint({"mesh", "a.stl", "--box", "1", "2", "3"}),
+                HasSubstr("3 numbers where 6 are needed"));
+    EXPECT_THAT(complaint({"mesh", "a.stl", "--seed", "1", "2"}), HasSubstr("2 numbers where 3 are needed"));
+    EXPECT_THAT(complaint({"mesh", "a.stl", "--seed", "air=1,2"}), HasSubstr("2 numbers where 3 are needed"));
+    EXPECT_THAT(complaint({"mesh", "a.stl", "--part-size", "wheel"}), HasSubstr("PART=D"));
+    EXPECT_THAT(complaint({"mesh", "a.toml", "b.stl"}), HasSubstr("together"));
+    EXPECT_THAT(complaint({"mesh", "no such.toml"}), HasSubstr("no such.toml"));
+    EXPECT_THAT(complaint({"mesh", "a.stl", "--external", "--internal"}), HasSubstr("--internal"));
+    EXPECT_THAT(complaint({"inspect", "a.toml"}), HasSubstr("no geometry"));
+    EXPECT_NE(complaint({"inspect"}), "accepted");
+    EXPECT_NE(complaint({"check"}), "accepted");
+    EXPECT_NE(complaint({"paint"}), "accepted");
+    EXPECT_NE(complaint({}), "accepted");
+}
+
+// The other commands take what they need.
+TEST(CommandLine, ReadsInspectCheckAndSample) {
+    const CommandLine inspect = parseCommandLine({"inspect", "a.stl", "b.stl", "--scale", "0.001"});
+    EXPECT_EQ(inspect.command, Command::inspect);
+    EXPECT_THAT(inspect.given.options.geometry.files, ElementsAre("a.stl", "b.stl"));
+    EXPECT_EQ(inspect.given.options.geometry.scale, 0.001);
+    const CommandLine check =
+        parseCommandLine({"check", "case", "--geometry", "a.stl", "b.stl", "--threads", "1"});
+    EXPECT_EQ(check.caseFolder, "case");
+    EXPECT_THAT(check.given.options.geometry.files, ElementsAre("a.stl", "b.stl"));
+    EXPECT_EQ(check.given.options.threads, 1);
+    const CommandLine sample = parseCommandLine({"sample", "engine", "-o", "engine.stl"});
+    EXPECT_EQ(sample.command, Command::sample);
+    EXPECT_EQ(sample.sample, "engine");
+    EXPECT_EQ(sample.sampleFile, "engine.stl");
+}
+
+// --write-case prints the case of this very command line.
+TEST(CommandLine, WriteCaseKeepsTheCommandLine) {
+    const CommandLine line =
+        parseCommandLine({"mesh", "a.stl", "--size", "0.3", "--seed", "0,0,1", "--write-case"});
+    EXPECT_TRUE(line.writeCase);
+    const Case back = parseCase(formatCase(line.given), "");
+    EXPECT_EQ(back.options.size.surface, 0.3);
+    EXPECT_THAT(back.options.geometry.files, ElementsAre("a.stl"));
+    ASSERT_EQ(back.options.domain.seeds.size(), 1u);
+}
+
+} // namespace
+} // namespace i2b

@@ -1,0 +1,118 @@
+#include "i2b/core/error.h"
+#include "i2b/program/options.h"
+#include <gmock/gmock.h>
+#include <limits>
+
+namespace i2b {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+Options good() {
+    Options options;
+    options.geometry.files = {"body.stl"};
+    options.size.surface = 0.01;
+    return options;
+}
+
+std::vector<std::string> keys(const Options& options) {
+    std::vector<std::string> found;
+    for (const Problem& problem : validate(options)) {
+        EXPECT_FALSE(problem.text.empty());
+        EXPECT_FALSE(problem.remedy.empty()) << problem.key;
+        found.push_back(problem.key);
+    }
+    return found;
+}
+
+// One number and a file are enough: every default is acceptable.
+TEST(Validate, FileAndSizeSuffice) { EXPECT_THAT(keys(good()), IsEmpty()); }
+
+// Each broken option is found, alone, under its own key.
+TEST(Validate, NamesEachBrokenOption) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const std::vector<std::pair<std::string, void (*)(Options&)>> cases{
+        {"geometry", [](Options& o) { o.geometry.files.clear(); }},
+        {"scale", [](Options& o) { o.geometry.scale = 0; }},
+        {"scale", [](Options& o) { o.geometry.scale = -1; }},
+        {"feature-angle", [](Options& o) { o.geometry.featureAngle = 181; }},
+        {"size", [](Options& o) { o.size.surface = 0; }},
+        {"size", [](Options& o) { o.size.surface = -1; }},
+        {"max-size", [](Options& o) { o.size.max = 0.005; }},
+        {"max-size", [](Options& o) { o.size.max = -1; }},
+        {"min-size", [](Options& o) { o.size.min = 0.02; }},
+        {"part-size",
+         [](Options& o) {
+             o.size.parts = {{"wheel", 0}};
+         }},
+        {"part-size",
+         [](Options& o) {
+             o.size.parts = {{"wheel(", 0.01}};
+         }},
+        {"part-size",
+         [](Options& o) {
+             o.size.min = 0.005, o.size.parts = {{"wheel", 0.001}};
+         }},
+        {"box-size",
+         [](Options& o) {
+             o.size.boxes = {{{{0, 0, 0}, {1, 1, 0}}, 0.1}};
+         }},
+        {"box-size",
+         [](Options& o) {
+             o.size.boxes = {{{{0, 0, 0}, {1, 1, 1}}, 0}};
+         }},
+        {"buffer-cells", [](Options& o) { o.size.bufferCells = 0; }},
+        {"box",
+         [](Options& o) {
+             o.domain.box = Box{{0, 0, 0}, {1, -1, 1}};
+         }},
+        {"seed",
+         [](Options& o) {
+             o.domain.box = Box{{0, 0, 0}, {1, 1, 1}}, o.domain.seeds = {{"", {2, 0, 0}}};
+         }},
+        {"seed",
+         [](Options& o) {
+             o.domain.flow = Flow::external, o.domain.seeds = {{"", {2, 0, 0}}};
+         }},
+        {"clearance", [](Options& o) { o.fit.clearance = -0.1; }},
+        {"sweeps", [](Options& o) { o.fit.sweeps = -1; }},
+        {"layers", [](Options& o) { o.layers.count = 101; }},
+        {"first-layer", [](Options& o) { o.layers.first = -1; }},
+        {"growth", [](Options& o) { o.layers.growth = 0.4; }},
+        {"growth", [](Options& o) { o.layers.growth = 5; }},
+        {"format", [](Options& o) { o.output.formats = {"vtk"}; }},
+        {"out", [](Options& o) { o.output.folder.clear(); }},
+        {"threads", [](Options& o) { o.threads = -1; }},
+    };
+    for (const auto& [key, spoil] : cases) {
+        Options options = good();
+        spoil(options);
+        EXPECT_THAT(keys(options), ElementsAre(key));
+    }
+    Options options = good();
+    options.layers.growth = options.size.surface = options.geometry.featureAngle = nan;
+    EXPECT_THAT(keys(options), ElementsAre("feature-angle", "size", "growth"));
+}
+
+// The error names every problem at once, and where each key was set: line of the case file or option.
+TEST(RequireValid, SaysWhereEachKeyWasSet) {
+    Case given;
+    given.options = good();
+    given.options.size.surface = 0;
+    given.options.layers.growth = 9;
+    given.file = "car.toml";
+    given.lines["growth"] = 7;
+    try {
+        requireValid(given);
+        FAIL() << "accepted";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.exitStatus(), 2);
+        EXPECT_THAT(error.what(), HasSubstr("size is missing (--size): give"));
+        EXPECT_THAT(error.what(), HasSubstr("car.toml:7, key growth"));
+    }
+}
+
+} // namespace
+} // namespace i2b
