@@ -3,6 +3,16 @@
 #   OPENVDB gives it the shared precompiled OpenVDB header (20 s a file without it).
 function(i2b_stage name)
   cmake_parse_arguments(arg "OPENVDB" "" "SOURCES;LINK" ${ARGN})
+  # I2B_SKIP_MISSING
+  foreach(source ${arg_SOURCES})
+    if(NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${source})
+      message(WARNING "missing ${source}")
+      list(REMOVE_ITEM arg_SOURCES ${source})
+    endif()
+  endforeach()
+  if(NOT arg_SOURCES)
+    return()
+  endif()
   add_library(i2b_${name} OBJECT ${arg_SOURCES})
   target_include_directories(i2b_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>)
   target_link_libraries(i2b_${name} PRIVATE i2b_settings PUBLIC TBB::tbb fmt::fmt ${arg_LINK})
@@ -33,6 +43,10 @@ function(i2b_test name)
   target_link_libraries(test_${name} PRIVATE i2b_settings ${arg_STAGES} ${arg_LINK} GTest::gmock GTest::gtest_main)
   if(arg_OPENVDB)
     target_link_libraries(test_${name} PRIVATE OpenVDB::openvdb)
+    # GCC takes a precompiled header only with the code model it was made with: the stages' -fPIC, not the -fPIE
+    # that CMake gives programs.
+    set_target_properties(test_${name} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+    target_compile_options(test_${name} PRIVATE -fPIC)
     target_precompile_headers(test_${name} REUSE_FROM i2b_vdb_pch)
   endif()
   gtest_discover_tests(test_${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT ${arg_TIMEOUT})

@@ -184,7 +184,7 @@ struct Parser {
     Parser() {
         app.require_subcommand(1);
         app.failure_message(CLI::FailureMessage::simple);
-        app.set_version_flag("--version", "i2b 0.1.0");
+        app.set_version_flag("--version", "i2b " I2B_VERSION);
         addMesher("mesh", "Make the whole mesh", Command::mesh);
         addMesher("grid", "Make the Cartesian grid alone and write grid.vdb", Command::grid);
         addMesher("regions", "Show what would be painted: regions, seeds, leaks", Command::regions);
@@ -199,7 +199,15 @@ struct Parser {
         CLI::App& sample =
             command("sample", "Write a built-in geometry; without a name, list them", Command::sample);
         sample.add_option("name", line.sample, "Its name");
-        sample.add_option("-o,--out", line.sampleFile, "The STL file to write")->type_name("FILE");
+        sample
+            .add_option("-o,--out", line.sampleFile,
+                        "The .stl file to write, or a folder for a file per part")
+            ->type_name("FILE");
+        sample.add_option("--dirt", line.dirt, "Scales cracks and overlaps; 0: the clean twin [1]")
+            ->type_name("F");
+        sample
+            .add_option("--resolution", line.resolution, "Multiplies the segments along curves, 1 to 8 [1]")
+            ->type_name("N");
     }
 
     // Files to geometry or case file, then the command line's changes on top.

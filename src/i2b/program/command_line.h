@@ -15,7 +15,9 @@ struct CommandLine {
     bool writeCase = false; // mesh, grid, regions: print the case file instead of running
     std::string caseFolder; // check: an OpenFOAM case
     std::string sample;     // sample: the name of a built-in geometry; empty: list them
-    std::string sampleFile; // sample: the file to write
+    std::string sampleFile; // sample: the .stl file to write, or a folder for a file per part
+    double dirt = 1;        // sample: scales cracks and overlaps; 0: clean
+    int resolution = 1;     // sample: multiplies the segments along curves
 };
 
 // arguments without the program's name. Reads the case file if one is named. Throws Error (usage).

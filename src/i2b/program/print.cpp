@@ -1,0 +1,87 @@
+#include "i2b/program/print.h"
+#include "i2b/program/progress.h"
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <numeric>
+
+namespace i2b {
+namespace {
+
+constexpr double negligible = 1e-6; // of the largest region's volume
+
+std::string partNames(const Region& region, const std::vector<ReportPart>& parts) {
+    constexpr std::size_t most = 4;
+    std::vector<std::string> names;
+    for (const std::int32_t part : region.parts) {
+        if (names.size() == most) {
+            names.push_back(fmt::format("and {} more", region.parts.size() - most));
+            break;
+        }
+        names.push_back(parts.at(static_cast<std::size_t>(part)).name);
+    }
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string regionLine(const Region& region, const std::vector<ReportPart>& parts) {
+    return fmt::format("{:<3} {:<12} {:>9} cells {:>11.4g} m3{}  --seed {:.6g},{:.6g},{:.6g}  {}\n",
+                       region.painted ? "yes" : "no", region.name, countText(region.cells), region.volume,
+                       region.touchesDomainBox ? "  meets the box" : "", region.seed.x, region.seed.y,
+                       region.seed.z, partNames(region, parts));
+}
+
+} // namespace
+
+std::string fitText(const FitReport& fit) {
+    return fmt::format("Fit to the geometry (h: size of the local wall cell)\n"
+                       "    wall nodes within 0.01 h: {:.2f} % of {}\n"
+                       "    wall face centres: {:.4f} h off on average; farthest wall node {:.4f} h, at "
+                       "({:.6g} {:.6g} {:.6g})\n"
+                       "    sharp edges captured: {:.2f} % of {} samples\n"
+                       "    faces tilted over 25 degrees: {:.2f} %\n",
+                       100 * fit.wallNodesOnGeometryFraction, fit.wallNodes, fit.meanDistanceInH,
+                       fit.maxDistanceInH, fit.farthest.x, fit.farthest.y, fit.farthest.z,
+                       100 * fit.featureCaptureFraction, fit.featureSamples, 100 * fit.tiltedFaceFraction);
+}
+
+std::string regionsText(const Regions& regions, const std::vector<ReportPart>& parts) {
+    std::vector<const Region*> bySize;
+    for (const Region& region : regions.table) bySize.push_back(&region);
+    std::ranges::stable_sort(bySize, std::greater{}, &Region::volume);
+    const double least = bySize.empty() ? 0 : negligible * bySize.front()->volume;
+    std::string text = "painted, name, size, seed, parts beside it\n";
+    std::size_t small = 0;
+    for (const Region* region : bySize) {
+        if (region->volume < least && !region->painted)
+            ++small;
+        else
+            text += regionLine(*region, parts);
+    }
+    if (small) text += fmt::format("and {} regions smaller than {:.2g} m3\n", small, least);
+    for (const Leak& leak : regions.leaks)
+        text += fmt::format("leak {:.4g} m wide at {:.6g},{:.6g},{:.6g}: {}\n", leak.width, leak.place.x,
+                            leak.place.y, leak.place.z, leak.text);
+    return text;
+}
+
+std::string summaryText(const RunReport& report) {
+    std::string text =
+        fmt::format("{} cells, {} faces, {} points in {:.1f} s and {:.0f} MB\n", report.cells, report.faces,
+                    report.points, report.seconds, static_cast<double>(report.peakRssBytes) * 1e-6);
+    if (const auto& q = report.quality)
+        text += fmt::format(
+            "quality: {}; non-orthogonality {:.1f} at most, {:.1f} on average; skewness {:.2f}\n",
+            q->ok() ? "all checks pass" : fmt::format("{} checks fail (see report.json)", q->failedChecks),
+            q->maxNonOrthogonality, q->meanNonOrthogonality, q->maxSkewness);
+    if (const auto& f = report.fit)
+        text += fmt::format(
+            "fit: {:.2f} % of the wall nodes on the geometry, {:.1f} % of the sharp edges captured\n",
+            100 * f->wallNodesOnGeometryFraction, 100 * f->featureCaptureFraction);
+    if (const auto& l = report.layers)
+        text += fmt::format(
+            "layers: {:.2f} of {} on average, {:.1f} % of the faces covered, {:.1f} % of the thickness\n",
+            l->meanCount, l->requested, 100 * l->facesCoveredFraction, 100 * l->thicknessFraction);
+    return text;
+}
+
+} // namespace i2b

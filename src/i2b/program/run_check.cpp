@@ -1,0 +1,52 @@
+// i2b check: quality of any polyMesh in checkMesh's words, and how well its walls fit a geometry.
+#include "i2b/geometry/features.h"
+#include "i2b/geometry/read.h"
+#include "i2b/geometry/surface_index.h"
+#include "i2b/program/print.h"
+#include "i2b/program/runs.h"
+#include "i2b/quality/fit_report.h"
+#include "i2b/quality/quality_report.h"
+#include "i2b/write/foam_read.h"
+#include <fmt/format.h>
+
+namespace i2b {
+namespace {
+
+FitReport fitTo(const PolyMesh& mesh, const GeometryOptions& geometry, Run& run) {
+    GeometryNotes notes;
+    Surface surface;
+    {
+        Stage stage(run.context, "read");
+        surface = readSurface(geometry.files, geometry.scale, notes);
+        stage.items = surface.triangles.size();
+    }
+    Stage stage(run.context, "fit");
+    const SurfaceIndex index(surface);
+    const FeatureGraph features = buildFeatureGraph(surface, {geometry.featureAngle, 0});
+    const FitReport fit = measureFit(mesh, index, features);
+    stage.items = static_cast<std::uint64_t>(fit.wallFaces);
+    return fit;
+}
+
+} // namespace
+
+int runCheck(const CommandLine& line, Run& run) {
+    PolyMesh mesh;
+    {
+        Stage stage(run.context, "read mesh");
+        mesh = readFoam(line.caseFolder);
+        stage.items = static_cast<std::uint64_t>(mesh.cells);
+    }
+    QualityReport quality;
+    {
+        Stage stage(run.context, "quality");
+        quality = measureQuality(mesh);
+        stage.items = static_cast<std::uint64_t>(mesh.cells);
+    }
+    fmt::print(run.out, "{}", formatQuality(quality));
+    if (!line.given.options.geometry.files.empty())
+        fmt::print(run.out, "\n{}", fitText(fitTo(mesh, line.given.options.geometry, run)));
+    return quality.ok() ? 0 : 1;
+}
+
+} // namespace i2b

@@ -1,0 +1,100 @@
+#include "i2b/core/error.h"
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace i2b {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+struct Outcome {
+    int status = -1;
+    std::string text; // both streams
+};
+
+// Runs the real program in a folder of its own.
+class ExitStatus : public ::testing::Test {
+  protected:
+    std::filesystem::path folder_ =
+        std::filesystem::temp_directory_path() / ("i2b_exit_status_" + std::to_string(getpid()));
+    void SetUp() override { std::filesystem::create_directories(folder_); }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    Outcome run(const std::string& arguments) const {
+        const std::string command =
+            "cd '" + folder_.string() + "' && '" I2B_PROGRAM "' " + arguments + " 2>&1";
+        std::FILE* const pipe = popen(command.c_str(), "r");
+        Outcome outcome;
+        std::array<char, 4096> buffer{};
+        for (std::size_t n; (n = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
+            outcome.text.append(buffer.data(), n);
+        const int status = pclose(pipe);
+        outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+        return outcome;
+    }
+};
+
+// 0: help and version.
+TEST_F(ExitStatus, HelpSucceeds) {
+    EXPECT_EQ(run("--help").status, 0);
+    EXPECT_THAT(run("mesh --help").text, HasSubstr("--feature-angle"));
+    EXPECT_THAT(run("--version").text, StartsWith("i2b "));
+}
+
+// 1: the input cannot be meshed, and the message names the file.
+TEST_F(ExitStatus, MissingGeometryIsOne) {
+    const Outcome inspect = run("inspect nowhere.stl");
+    EXPECT_EQ(inspect.status, 1);
+    EXPECT_THAT(inspect.text, HasSubstr("nowhere.stl"));
+    EXPECT_EQ(run("check nowhere").status, 1);
+    std::ofstream(folder_ / "empty.stl") << "";
+    EXPECT_EQ(run("inspect empty.stl").status, 1);
+}
+
+// 2: the command line or the case file is wrong, and the message names option or file, line and key.
+TEST_F(ExitStatus, WrongUseIsTwo) {
+    EXPECT_EQ(run("").status, 2);
+    EXPECT_THAT(run("mesh --sise 1 a.stl").text, HasSubstr("--sise"));
+    EXPECT_EQ(run("mesh --sise 1 a.stl").status, 2);
+    EXPECT_EQ(run("mesh a.stl").status, 2);
+    EXPECT_THAT(run("mesh a.stl").text, AllOf(HasSubstr("size is missing"), HasSubstr("--size")));
+    std::ofstream(folder_ / "car.toml") << "geometry = 'a.stl'\nsize = 1\ngrowth = 99\n";
+    const Outcome car = run("mesh car.toml");
+    EXPECT_EQ(car.status, 2);
+    EXPECT_THAT(car.text, HasSubstr("car.toml:3, key growth"));
+    EXPECT_EQ(run("sample nonsense -o a.stl").status, 2);
+    EXPECT_EQ(run("sample box").status, 2);
+    EXPECT_EQ(run("mesh no.toml").status, 2);
+}
+
+// A sample goes out and comes back in: the cube has 12 triangles and an extent of one metre, or of a
+// millimetre.
+TEST_F(ExitStatus, SampleIsInspected) {
+    const Outcome sample = run("sample box -o box.stl");
+    ASSERT_EQ(sample.status, 0) << sample.text;
+    const Outcome inspect = run("inspect box.stl --scale 0.001");
+    EXPECT_EQ(inspect.status, 0);
+    EXPECT_THAT(inspect.text, HasSubstr("12"));
+    EXPECT_THAT(run("sample").text, HasSubstr("engine"));
+}
+
+// --write-case prints a case file that the program takes, wherever it is asked for.
+TEST_F(ExitStatus, WrittenCaseIsRead) {
+    ASSERT_EQ(run("mesh a.stl --size 0.25 --write-case > a.toml").status, 0);
+    EXPECT_EQ(run("mesh a.toml --write-case > b.toml").status, 0);
+    std::ifstream a(folder_ / "a.toml"), b(folder_ / "b.toml");
+    const std::string first{std::istreambuf_iterator<char>(a), {}},
+        second{std::istreambuf_iterator<char>(b), {}};
+    EXPECT_THAT(first, HasSubstr("size = 0.25"));
+    EXPECT_EQ(first, second);
+}
+
+} // namespace
+} // namespace i2b
