@@ -1,6 +1,9 @@
 // Spatial index over a Surface: closest point, first hit of a segment, box overlap. O(log N) a query.
-// Embree 3 walks the tree in single precision about the soup's own centre with padded boxes; every answer is
-// computed from the doubles. Queries are const and may run on any number of threads.
+// Embree 3 builds the tree (triangle_tree.h) in single precision about the soup's own centre with padded
+// boxes; the walks decide by triangles in double precision, so an answer is the one a loop over all triangles
+// would give, bit for bit. Queries are const and may run on any number of threads. The closest point costs
+// about a microsecond on 330,000 triangles; a radius, such as a neighbour's answer plus the step between
+// them, makes it cheaper.
 #pragma once
 #include "i2b/core/vec.h"
 #include "i2b/geometry/surface.h"
@@ -13,14 +16,14 @@
 namespace i2b {
 
 struct ClosestPoint {
-    Vec3 point;                    // on the triangle
+    Vec3 point; // on the triangle
     double distance = std::numeric_limits<double>::infinity();
-    std::uint32_t triangle = ~0u;  // ~0u: nothing within the radius asked for
+    std::uint32_t triangle = ~0u; // ~0u: nothing within the radius asked for
     explicit operator bool() const { return triangle != ~0u; }
 };
 
 struct SegmentHit {
-    double t = 2;                  // along a + t (b - a), 0 <= t <= 1 where there is a hit
+    double t = 2; // along a + t (b - a), 0 <= t <= 1 where there is a hit
     std::uint32_t triangle = ~0u;
     explicit operator bool() const { return triangle != ~0u; }
 };
@@ -37,8 +40,11 @@ class SurfaceIndex {
     // The closest point of all triangles within radius; among equals the triangle with the lowest number.
     ClosestPoint closest(const Vec3& q, double radius = std::numeric_limits<double>::infinity()) const;
     // As closest(), over the triangles that accept() takes.
-    ClosestPoint closest(const Vec3& q, double radius, const std::function<bool(std::uint32_t)>& accept) const;
-    // The first triangle along the closed segment, from a; among equals the lowest number.
+    ClosestPoint closest(const Vec3& q, double radius,
+                         const std::function<bool(std::uint32_t)>& accept) const;
+    // The first triangle along the closed segment, from a; among equals the lowest number. Rounding decides
+    // for the hit (1e-13 of the segment's and the triangle's size), so that nothing slips between triangles
+    // sharing an edge.
     SegmentHit firstHit(const Vec3& a, const Vec3& b) const;
     // True if any triangle meets the closed box (exact separating-axis test in doubles).
     bool overlaps(const Box& box) const;
@@ -51,7 +57,8 @@ class SurfaceIndex {
     std::unique_ptr<Impl> impl_;
 };
 
-// Closest point of one triangle to q (Ericson, Real-Time Collision Detection, section 5.1.5); degenerate ones too.
+// Closest point of one triangle to q (Ericson, Real-Time Collision Detection, section 5.1.5); degenerate ones
+// too.
 Vec3 closestPointOnTriangle(const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c);
 
 } // namespace i2b

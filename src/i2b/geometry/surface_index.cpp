@@ -1,0 +1,488 @@
+#include "i2b/geometry/surface_index.h"
+#include "i2b/core/error.h"
+#include "i2b/core/parallel.h"
+#include "i2b/geometry/triangle_box.h"
+#include "i2b/geometry/triangle_tree.h"
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <embree3/rtcore.h>
+
+namespace i2b {
+
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+double maxAbs(const Vec3& v) { return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z))); }
+
+// ---- building
+// ------------------------------------------------------------------------------------------------
+
+// What Embree's builder hands back: a node or a leaf, in its own memory; flattened afterwards.
+struct BuildNode {
+    std::uint32_t leafCount = 0; // 0: an inner node
+    std::uint32_t children = 0;
+    BuildNode* child[4] = {};
+    RTCBounds bounds[4] = {};
+    std::uint32_t triangles[4] = {};
+};
+
+constexpr unsigned leafSize = 4;
+
+void* createNode(RTCThreadLocalAllocator allocator, unsigned, void*) {
+    return new (rtcThreadLocalAlloc(allocator, sizeof(BuildNode), 16)) BuildNode;
+}
+void setChildren(void* node, void** children, unsigned count, void*) {
+    auto* n = static_cast<BuildNode*>(node);
+    n->children = count;
+    for (unsigned i = 0; i < count; ++i) n->child[i] = static_cast<BuildNode*>(children[i]);
+}
+void setBounds(void* node, const RTCBounds** bounds, unsigned count, void*) {
+    for (unsigned i = 0; i < count; ++i) static_cast<BuildNode*>(node)->bounds[i] = *bounds[i];
+}
+void* createLeaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, std::size_t count,
+                 void*) {
+    auto* n = new (rtcThreadLocalAlloc(allocator, sizeof(BuildNode), 16)) BuildNode;
+    n->leafCount = static_cast<std::uint32_t>(count);
+    for (std::size_t i = 0; i < count; ++i) n->triangles[i] = primitives[i].primID;
+    return n;
+}
+
+// Rounded outwards: a float that is not above / not below x.
+float floatBelow(double x) {
+    const float f = static_cast<float>(x);
+    return std::nextafter(f, -std::numeric_limits<float>::infinity());
+}
+float floatAbove(double x) {
+    const float f = static_cast<float>(x);
+    return std::nextafter(f, std::numeric_limits<float>::infinity());
+}
+
+std::vector<RTCBuildPrimitive> buildPrimitives(const Surface& surface, const Vec3& centre) {
+    std::vector<RTCBuildPrimitive> primitives(surface.triangles.size());
+    parallelFor(primitives.size(), [&](std::size_t t) {
+        Box box;
+        for (const std::uint32_t p : surface.triangles[t]) box.add(surface.points[p] - centre);
+        primitives[t] = {
+            floatBelow(box.lo.x), floatBelow(box.lo.y), floatBelow(box.lo.z), 0,
+            floatAbove(box.hi.x), floatAbove(box.hi.y), floatAbove(box.hi.z), static_cast<unsigned>(t)};
+    });
+    return primitives;
+}
+
+// Depth first, children in the builder's order; leaves take the next triangles.
+std::uint32_t flatten(const BuildNode& from, TriangleTree& tree) {
+    const auto at = static_cast<std::uint32_t>(tree.nodes.size());
+    TreeNode node;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const bool used = i < from.children;
+        const RTCBounds& b = from.bounds[i];
+        const float lo[3] = {b.lower_x, b.lower_y, b.lower_z}, hi[3] = {b.upper_x, b.upper_y, b.upper_z};
+        for (int k = 0; k < 3; ++k) {
+            node.lo[k][i] = used ? lo[k] : std::numeric_limits<float>::infinity();
+            node.hi[k][i] = used ? hi[k] : -std::numeric_limits<float>::infinity();
+        }
+        node.child[i] = TreeNode::none;
+        node.count[i] = used ? from.child[i]->leafCount : 0;
+    }
+    tree.nodes.push_back(node);
+    for (std::size_t i = 0; i < from.children; ++i) {
+        const BuildNode& child = *from.child[i];
+        if (child.leafCount == 0) {
+            const std::uint32_t n = flatten(child, tree);
+            tree.nodes[at].child[i] = n;
+            continue;
+        }
+        tree.nodes[at].child[i] = static_cast<std::uint32_t>(tree.triangles.size());
+        for (std::uint32_t k = 0; k < child.leafCount; ++k) {
+            tree.triangles.emplace_back();
+            tree.triangles.back().id = child.triangles[k];
+        }
+    }
+    return at;
+}
+
+[[noreturn]] void throwOutOfMemory() {
+    throw Error(ErrorKind::internal, "the spatial index of the geometry could not be built", "surface index",
+                "free some memory and try again");
+}
+
+} // namespace
+
+TriangleTree buildTriangleTree(const Surface& surface) {
+    TriangleTree tree;
+    if (surface.triangles.empty()) return tree;
+    Box bounds;
+    for (const auto& t : surface.triangles)
+        for (const std::uint32_t p : t) bounds.add(surface.points[p]);
+    tree.centre = bounds.centre();
+    tree.reach = std::max(maxAbs(bounds.lo - tree.centre), maxAbs(bounds.hi - tree.centre));
+    tree.magnitude = std::max(maxAbs(bounds.lo), maxAbs(bounds.hi));
+
+    std::vector<RTCBuildPrimitive> primitives = buildPrimitives(surface, tree.centre);
+    RTCDevice device = rtcNewDevice(nullptr);
+    RTCBVH bvh = rtcNewBVH(device);
+    RTCBuildArguments arguments = rtcDefaultBuildArguments();
+    arguments.maxBranchingFactor = 4;
+    arguments.maxDepth = 60;
+    arguments.maxLeafSize = leafSize;
+    arguments.traversalCost = 1;
+    arguments.intersectionCost = 2;
+    arguments.bvh = bvh;
+    arguments.primitives = primitives.data();
+    arguments.primitiveCount = arguments.primitiveArrayCapacity = primitives.size();
+    arguments.createNode = createNode;
+    arguments.setNodeChildren = setChildren;
+    arguments.setNodeBounds = setBounds;
+    arguments.createLeaf = createLeaf;
+    const auto* root = static_cast<const BuildNode*>(rtcBuildBVH(&arguments));
+    if (root != nullptr) {
+        tree.triangles.reserve(primitives.size());
+        tree.nodes.reserve(primitives.size() / 2 + 1);
+        if (root->leafCount == 0) {
+            flatten(*root, tree);
+        } else { // so few triangles that the root is a leaf
+            BuildNode top;
+            top.children = 1;
+            top.child[0] = const_cast<BuildNode*>(root);
+            const auto r = floatAbove(tree.reach);
+            top.bounds[0] = {-r, -r, -r, 0, r, r, r, 0};
+            flatten(top, tree);
+        }
+    }
+    rtcReleaseBVH(bvh);
+    rtcReleaseDevice(device);
+    if (tree.triangles.size() != surface.triangles.size()) throwOutOfMemory();
+    parallelFor(tree.triangles.size(), [&](std::size_t i) {
+        TreeTriangle& t = tree.triangles[i];
+        const auto& v = surface.triangles[t.id];
+        t.a = surface.points[v[0]];
+        t.b = surface.points[v[1]];
+        t.c = surface.points[v[2]];
+    });
+    return tree;
+}
+
+// ---- one triangle
+// --------------------------------------------------------------------------------------------
+
+namespace {
+
+Vec3 closestPointOnSegment(const Vec3& q, const Vec3& a, const Vec3& b) {
+    const Vec3 d = b - a;
+    const double t = dot(q - a, d), l = norm2(d);
+    return t <= 0 || !(l > 0) ? a : t >= l ? b : a + d * (t / l);
+}
+
+// The nearest of the three edges and, where there is one, a point of the inside.
+Vec3 closestPointOnThinTriangle(const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c,
+                                const Vec3* inside) {
+    Vec3 best = closestPointOnSegment(q, a, b);
+    double d = norm2(q - best);
+    const auto offer = [&](const Vec3& p) {
+        if (const double e = norm2(q - p); e < d) best = p, d = e;
+    };
+    offer(closestPointOnSegment(q, a, c));
+    offer(closestPointOnSegment(q, b, c));
+    if (inside != nullptr) offer(*inside);
+    return best;
+}
+
+} // namespace
+
+Vec3 closestPointOnTriangle(const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 ab = b - a, ac = c - a, ap = q - a;
+    const double d1 = dot(ab, ap), d2 = dot(ac, ap);
+    if (d1 <= 0 && d2 <= 0) return a;
+    const Vec3 bp = q - b;
+    const double d3 = dot(ab, bp), d4 = dot(ac, bp);
+    if (d3 >= 0 && d4 <= d3) return b;
+    const Vec3 cp = q - c;
+    const double d5 = dot(ab, cp), d6 = dot(ac, cp);
+    if (d6 >= 0 && d5 <= d6) return c;
+    const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
+    // The sum is the squared length of the normal, each term a difference of products of the size below:
+    // where it is mostly cancellation (needles), their signs mean little.
+    const double sum = va + vb + vc, l = std::max(norm2(ab), norm2(ac));
+    const bool inside = va > 0 && vb > 0 && vc > 0;
+    if (!(sum > 1e-8 * l * std::max(l, norm2(ap)))) {
+        const Vec3 p = inside ? a + ab * (vb / sum) + ac * (vc / sum) : a;
+        return closestPointOnThinTriangle(q, a, b, c, inside ? &p : nullptr);
+    }
+    if (inside) return a + ab * (vb / sum) + ac * (vc / sum);
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return closestPointOnSegment(q, a, b);
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return closestPointOnSegment(q, a, c);
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return closestPointOnSegment(q, b, c);
+    return closestPointOnThinTriangle(q, a, b, c, nullptr); // rounding put q beside every region
+}
+
+namespace {
+
+// Where along t d, 0 <= t <= 1, the segment comes closest to the edge p q, and how close (squared).
+double closestAlong(const Vec3& d, const Vec3& p, const Vec3& q, double& distance2) {
+    double best = 0;
+    distance2 = infinity;
+    const auto offer = [&](double t, const Vec3& onEdge) {
+        const double e = norm2(d * t - onEdge);
+        if (e < distance2 || (e == distance2 && t < best)) best = t, distance2 = e;
+    };
+    const double l = norm2(d);
+    const auto along = [&](const Vec3& r) { return l > 0 ? std::clamp(dot(r, d) / l, 0.0, 1.0) : 0.0; };
+    offer(0, closestPointOnSegment({}, p, q));
+    offer(1, closestPointOnSegment(d, p, q));
+    offer(along(p), p);
+    offer(along(q), q);
+    const Vec3 e = q - p, n = cross(d, e), m = cross(p, e);
+    if (const double n2 = norm2(n); n2 > 0) { // the point where the lines cross, if both have it
+        const double t = dot(m, n) / n2, s = dot(cross(p, d), n) / n2;
+        if (t >= 0 && t <= 1 && s >= 0 && s <= 1) offer(t, p + e * s);
+    }
+    return best;
+}
+
+// The segment lies in the plane of the triangle, or the triangle has none: it touches where it begins inside,
+// or where it first comes within rounding of an edge.
+double touchInPlane(const Vec3& d, const Vec3& p, const Vec3& q, const Vec3& r, double tolerance2) {
+    if (norm2(closestPointOnTriangle({}, p, q, r)) <= tolerance2) return 0;
+    double best = 2;
+    const Vec3 v[4] = {p, q, r, p};
+    for (int i = 0; i < 3; ++i) {
+        double distance2 = 0;
+        const double t = closestAlong(d, v[i], v[i + 1], distance2);
+        if (distance2 <= tolerance2) best = std::min(best, t);
+    }
+    return best;
+}
+
+// t of the first point of the closed segment a + t d on the closed triangle, 2 if there is none. Signs are
+// judged with the error of their terms and taken as a hit where it leaves them open, so that no segment slips
+// between two triangles that share an edge; the price is a hit that misses by some 1e-15 of the sizes
+// involved.
+double hitTriangle(const Vec3& a, const Vec3& d, const TreeTriangle& tri) {
+    const Vec3 p = tri.a - a, q = tri.b - a, r = tri.c - a;
+    const double lp = maxAbs(p), lq = maxAbs(q), lr = maxAbs(r), ld = maxAbs(d);
+    constexpr double k = 32 * eps;
+    // The line against the three edges: all on one side.
+    const double u = dot(d, cross(q, r)), v = dot(d, cross(r, p)), w = dot(d, cross(p, q));
+    const double eu = k * ld * lq * lr, ev = k * ld * lr * lp, ew = k * ld * lp * lq;
+    if ((u < -eu || v < -ev || w < -ew) && (u > eu || v > ev || w > ew)) return 2;
+    // The ends against the plane.
+    const Vec3 e = q - p, f = r - p, n = cross(e, f);
+    const double area = maxAbs(e) * maxAbs(f);
+    const double sa = -dot(n, p), sb = dot(n, d - p);
+    const double ea = k * area * lp, eb = k * area * (lp + ld);
+    if ((sa > ea && sb > eb) || (sa < -ea && sb < -eb)) return 2;
+    const double tolerance = 1e-13 * std::max(std::max(lp, lq), std::max(lr, ld)),
+                 tolerance2 = tolerance * tolerance;
+    if (std::abs(sa - sb) > ea + eb) {
+        const double t = std::clamp(sa / (sa - sb), 0.0, 1.0);
+        if (norm2(d * t - closestPointOnTriangle(d * t, p, q, r)) <= tolerance2) return t;
+    }
+    return touchInPlane(d, p, q, r, tolerance2);
+}
+
+} // namespace
+
+// ---- walking
+// -------------------------------------------------------------------------------------------------
+
+struct SurfaceIndex::Impl {
+    const Surface* surface = nullptr;
+    TriangleTree tree;
+
+    template <class Accept>
+    ClosestPoint closest(const Vec3& q, double radius, const Accept& accept) const;
+    template <class V, class Accept>
+    void walkClosest(const Vec3& q, const Accept& accept, ClosestPoint& best, double& best2) const;
+    template <class Visit>
+    bool walkBox(const Box& box, const Visit& visit) const;
+};
+
+// V: the lanes boxes are measured in; single precision unless q lies so far out that its rounding would blur
+// them.
+template <class V, class Accept>
+void SurfaceIndex::Impl::walkClosest(const Vec3& q, const Accept& accept, ClosestPoint& best,
+                                     double& best2) const {
+    using Real = std::remove_cvref_t<decltype(V{}[0])>;
+    const Vec3 about = q - tree.centre;
+    const Real x = static_cast<Real>(about.x), y = static_cast<Real>(about.y), z = static_cast<Real>(about.z);
+    // What rounding q, the differences and the squares can add to a box's distance, and to that of an answer.
+    const double size = maxAbs(about) + tree.reach;
+    const double slack = 4 * static_cast<double>(std::numeric_limits<Real>::epsilon()) * size +
+                         16 * eps * (tree.magnitude + maxAbs(q));
+    const auto limitOf = [&](double d2) {
+        const double d =
+            (std::sqrt(d2) + slack) * (1 + 8 * static_cast<double>(std::numeric_limits<Real>::epsilon()));
+        return static_cast<Real>(std::min(d * d, static_cast<double>(std::numeric_limits<Real>::max())));
+    };
+    Real limit = limitOf(best2);
+    TreeStack<Real> stack;
+    stack.push(0, 0, 0, 0);
+    while (stack.size > 0) {
+        const auto item = stack.items[--stack.size];
+        if (item.key > limit) continue;
+        if (item.count > 0) {
+            for (std::uint32_t i = 0; i < item.count; ++i) {
+                const TreeTriangle& t = tree.triangles[item.child + i];
+                const Vec3 p = closestPointOnTriangle(q, t.a, t.b, t.c);
+                const double d2 = norm2(q - p);
+                if (d2 > best2 || (d2 == best2 && t.id > best.triangle) || !accept(t.id)) continue;
+                best.point = p;
+                best.triangle = t.id;
+                if (d2 < best2) limit = limitOf(d2);
+                best2 = d2;
+            }
+            continue;
+        }
+        const TreeNode& node = tree.nodes[item.child];
+        Real key[4];
+        V sum{};
+        const Real at[3] = {x, y, z};
+        for (int k = 0; k < 3; ++k) {
+            FloatLanes l, h;
+            std::memcpy(&l, node.lo[k], sizeof l);
+            std::memcpy(&h, node.hi[k], sizeof h);
+            const V a = __builtin_convertvector(l, V) - at[k], b = at[k] - __builtin_convertvector(h, V);
+            V d = a > b ? a : b;
+            d = d > Real(0) ? d : V{};
+            sum += d * d;
+        }
+        std::memcpy(key, &sum, sizeof key);
+        const std::size_t base = stack.size;
+        for (std::size_t i = 0; i < 4; ++i)
+            if (key[i] <= limit && node.child[i] != TreeNode::none)
+                stack.push(base, key[i], node.child[i], node.count[i]);
+    }
+}
+
+template <class Accept>
+ClosestPoint SurfaceIndex::Impl::closest(const Vec3& q, double radius, const Accept& accept) const {
+    ClosestPoint best;
+    if (tree.nodes.empty() || !(radius >= 0)) return best;
+    // Rounding must not lose an answer at the radius itself: look a trifle farther, then compare the
+    // distance.
+    double best2 = radius * radius * (1 + 8 * eps);
+    if (maxAbs(q - tree.centre) < 4 * tree.reach)
+        walkClosest<FloatLanes>(q, accept, best, best2);
+    else
+        walkClosest<Lanes>(q, accept, best, best2);
+    if (!best) return best;
+    best.distance = std::sqrt(best2);
+    return best.distance <= radius ? best : ClosestPoint{};
+}
+
+template <class Visit>
+bool SurfaceIndex::Impl::walkBox(const Box& box, const Visit& visit) const {
+    if (tree.nodes.empty() || box.empty()) return false;
+    // Differences from the centre round once; the boxes of the tree reach one float beyond.
+    const double pad = 4 * eps * (tree.magnitude + std::max(maxAbs(box.lo), maxAbs(box.hi)));
+    const Vec3 reach{pad, pad, pad};
+    const Box about{box.lo - tree.centre - reach, box.hi - tree.centre + reach};
+    TreeStack<int> stack;
+    stack.push(0, 0, 0, 0);
+    while (stack.size > 0) {
+        const auto item = stack.items[--stack.size];
+        if (item.count > 0) {
+            for (std::uint32_t i = 0; i < item.count; ++i)
+                if (visit(tree.triangles[item.child + i])) return true;
+            continue;
+        }
+        const TreeNode& node = tree.nodes[item.child];
+        for (std::size_t i = 0; i < 4; ++i)
+            if (node.child[i] != TreeNode::none && about.overlaps(treeBox(node, i)))
+                stack.items[stack.size++] = {0, node.child[i], node.count[i]};
+    }
+    return false;
+}
+
+SurfaceIndex::SurfaceIndex(const Surface& surface) : impl_(std::make_unique<Impl>()) {
+    impl_->surface = &surface;
+    impl_->tree = buildTriangleTree(surface);
+}
+SurfaceIndex::~SurfaceIndex() = default;
+SurfaceIndex::SurfaceIndex(SurfaceIndex&&) noexcept = default;
+SurfaceIndex& SurfaceIndex::operator=(SurfaceIndex&&) noexcept = default;
+
+const Surface& SurfaceIndex::surface() const { return *impl_->surface; }
+
+ClosestPoint SurfaceIndex::closest(const Vec3& q, double radius) const {
+    return impl_->closest(q, radius, [](std::uint32_t) { return true; });
+}
+
+ClosestPoint SurfaceIndex::closest(const Vec3& q, double radius,
+                                   const std::function<bool(std::uint32_t)>& accept) const {
+    return impl_->closest(q, radius, accept);
+}
+
+SegmentHit SurfaceIndex::firstHit(const Vec3& a, const Vec3& b) const {
+    const TriangleTree& tree = impl_->tree;
+    SegmentHit best;
+    if (tree.nodes.empty()) return best;
+    const Vec3 d = b - a, from = a - tree.centre;
+    // Twice the farthest that hitTriangle() lets a hit lie off its triangle, and so off the boxes.
+    const double pad = 2e-13 * (2 * (tree.reach + maxAbs(from)) + maxAbs(d)) +
+                       4 * eps * (tree.magnitude + maxAbs(a) + maxAbs(b));
+    double inverse[3], low[3], high[3];
+    for (int k = 0; k < 3; ++k) { // a component of zero must not give 0 * inf
+        const double s = std::abs(d[k]) < 1e-200 ? std::copysign(1e-200, d[k]) : d[k];
+        inverse[k] = 1 / s;
+        low[k] = from[k] + (s > 0 ? pad : -pad); // the side where the segment enters, moved against it
+        high[k] = from[k] - (s > 0 ? pad : -pad);
+    }
+    TreeStack<double> stack;
+    stack.push(0, 0, 0, 0);
+    while (stack.size > 0) {
+        const auto item = stack.items[--stack.size];
+        if (item.key > best.t) continue;
+        if (item.count > 0) {
+            for (std::uint32_t i = 0; i < item.count; ++i) {
+                const TreeTriangle& tri = tree.triangles[item.child + i];
+                const double t = hitTriangle(a, d, tri);
+                if (t < best.t || (t == best.t && t <= 1 && tri.id < best.triangle)) best = {t, tri.id};
+            }
+            continue;
+        }
+        const TreeNode& node = tree.nodes[item.child];
+        Lanes enter{}, leave = Lanes{} + 1.0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            FloatLanes l, h;
+            const bool up = inverse[k] > 0;
+            std::memcpy(&l, up ? node.lo[k] : node.hi[k], sizeof l);
+            std::memcpy(&h, up ? node.hi[k] : node.lo[k], sizeof h);
+            const Lanes s = (__builtin_convertvector(l, Lanes) - low[k]) * inverse[k];
+            const Lanes e = (__builtin_convertvector(h, Lanes) - high[k]) * inverse[k];
+            enter = s > enter ? s : enter;
+            leave = e < leave ? e : leave;
+        }
+        const std::size_t base = stack.size;
+        for (std::size_t i = 0; i < 4; ++i)
+            if (node.child[i] != TreeNode::none && enter[i] <= leave[i] && enter[i] <= best.t)
+                stack.push(base, enter[i], node.child[i], node.count[i]);
+    }
+    return best;
+}
+
+bool SurfaceIndex::overlaps(const Box& box) const {
+    return impl_->walkBox(box, [&](const TreeTriangle& t) { return triangleMeetsBox(t.a, t.b, t.c, box); });
+}
+
+std::vector<std::uint32_t> SurfaceIndex::candidates(const Box& box) const {
+    std::vector<std::uint32_t> found;
+    impl_->walkBox(box, [&](const TreeTriangle& t) {
+        if (box.overlaps({cwiseMin(t.a, cwiseMin(t.b, t.c)), cwiseMax(t.a, cwiseMax(t.b, t.c))}))
+            found.push_back(t.id);
+        return false;
+    });
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+Vec3 SurfaceIndex::normal(std::uint32_t triangle) const {
+    const Surface& s = surface();
+    const auto& t = s.triangles[triangle];
+    return normalized(cross(s.points[t[1]] - s.points[t[0]], s.points[t[2]] - s.points[t[0]]));
+}
+
+} // namespace i2b
