@@ -1,6 +1,5 @@
 #include "i2b/geometry/obj_piece.h"
 #include "i2b/geometry/text_scan.h"
-#include <cstdlib>
 
 namespace i2b {
 namespace {
@@ -57,7 +56,7 @@ struct StatementReader {
             const char* const first = *c.at == '+' ? c.at + 1 : c.at;
             const auto [end, error] = std::from_chars(first, c.end, i);
             const bool stops = end == c.end || text::isBlank(*end) || *end == '/' || *end == '\\';
-            if (error != std::errc() || !stops || i == 0 || std::abs(i) > largestIndex)
+            if (error != std::errc() || !stops || i == 0 || i > largestIndex || i < -largestIndex)
                 return fail(c.at, "a corner has no point number");
             if (i < 0) i += static_cast<ObjIndex>(piece.points.size()) + relativeBias;
             corners.push_back(i);
