@@ -32,6 +32,37 @@ std::vector<Loop2> engine::boreCircles(double radius, int n) {
     return holes;
 }
 
+Path engine::coolantInlet(const Make& make) {
+    return bentPath(
+        {{cylinder(1), 0.066, 0.350}, {cylinder(1), 0.118, 0.350}, {cylinder(1) - 0.05, 0.135, 0.29}}, 0.03,
+        make.n(8));
+}
+Path engine::coolantOutlet(const Make& make) {
+    return bentPath({{0.506, 0, 0.405}, {0.548, 0, 0.405}, {0.556, 0, 0.47}, {0.556, 0, 0.50}}, 0.026,
+                    make.n(8));
+}
+
+Path engine::trimmed(Path path, double d) {
+    path.back() -= normalized(path.back() - path[path.size() - 2]) * d;
+    return path;
+}
+
+void engine::openWall(Mesh& mesh, const Loop2& outline, const std::vector<double>& heights, double half,
+                      const Path& path, double radius, bool capped) {
+    const std::size_t n = outline.size();
+    const Vec3 from = path.front(), across = normalized(cross(path[1] - from, {0, 0, 1}));
+    const auto side = [&](std::size_t i) { // of an outline point, along the wall
+        return dot(Vec3{outline[i % n].x - from.x, outline[i % n].y - from.y, 0}, across);
+    };
+    const std::size_t middle = nearest(outline, {from.x, from.y}) + n;
+    std::size_t i0 = middle, i1 = middle, l0 = 0, l1 = heights.size() - 1;
+    while (std::abs(side(i0)) < half) --i0;
+    while (std::abs(side(i1)) < half) ++i1;
+    while (heights[l0 + 1] <= from.z - half) ++l0;
+    while (heights[l1 - 1] >= from.z + half) --l1;
+    growPipe(mesh, perforate(mesh, n, l0, l1, i0 % n, i0 % n + (i1 - i0)), path, radius, capped);
+}
+
 Parts engineParts(const Make& make) {
     Parts parts;
     addEngineBlock(parts, make);

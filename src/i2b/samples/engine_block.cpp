@@ -9,8 +9,8 @@ using namespace engine;
 
 Mesh block(const Make& make) {
     const double bottom = crankcaseTop + make.gap(0.6);
-    const Loop2 outline = subdivided(roundedRectangle({front, -0.072}, {rear, 0.072}, 0.012, make.n(4)),
-                                     0.024 / make.resolution);
+    const Loop2 outline = subdivided(roundedRectangle({front, -0.072}, {rear, 0.072}, 0.004, make.n(3)),
+                                     0.013 / make.resolution);
     const int rows = make.n(8);
     // In the dirty twin the bottom face, hidden on the crankcase, is missing: a hollow casting behind a
     // crack.
@@ -18,12 +18,16 @@ Mesh block(const Make& make) {
                         {!make.dirty(), true});
     if (make.dirty())
         for (int c = 0; c < 4; ++c) { // rib sheets on the intake side
-            const std::uint32_t i = nearest(outline, {cylinder(c) + 0.024, 0.072});
+            const std::uint32_t i = nearest(outline, {cylinder(c) + 0.048, 0.072});
             std::vector<std::uint32_t> chain;
             for (int l = 1; l < rows; ++l)
                 chain.push_back(std::uint32_t(l) * std::uint32_t(outline.size()) + i);
             addRib(mesh, chain, {0, 0.012, 0});
         }
+    for (Path path : {coolantInlet(make), coolantOutlet(make)}) { // spigots about the jacket's two bores
+        path.front() += normalized(path[1] - path[0]) * 0.009;
+        openWall(mesh, outline, levels(bottom, deck, rows), 0.0155, trimmed(path, 0.001), 0.0152, true);
+    }
     for (int c = 0; c < 5; ++c) // cast ribs between the cylinders, on the exhaust side, with draft
         append(mesh, roundedBox(Frame{{0, -0.0705, 0}, {1, 0, 0}, {0, 0, 1}, {0, -1, 0}},
                                 {{cylinder(c) - 0.054, bottom + 0.006},
@@ -50,7 +54,7 @@ Mesh block(const Make& make) {
                                 {0.0095, deck - 0.035},
                                 {0.0095, deck - 0.0012},
                                 {0, deck - 0.0012}},
-                               make.n(16)));
+                               make.n(12)));
     return mesh;
 }
 
@@ -83,7 +87,7 @@ Mesh crankcase(const Make& make) {
 
 Mesh gasket(const Make& make) {
     return extrude(
-        upright({}), roundedRectangle({front - 0.0015, -0.0735}, {rear + 0.0015, 0.0735}, 0.012, make.n(4)),
+        upright({}), roundedRectangle({front - 0.0015, -0.0735}, {rear + 0.0015, 0.0735}, 0.004, make.n(4)),
         boreCircles(bore + 0.001, make.n(36)), {deck + make.gap(0.2), headBottom - 0.001 - make.gap(0.1)});
 }
 

@@ -32,7 +32,7 @@ Profile pulley(double radius, double width, double dish, int grooves) {
 
 Mesh crankPulley(const Make& make) {
     Mesh mesh = lathe(axisAt(crankAt, beltFrom - 0.003),
-                      pulley(crankRadius, beltTo - beltFrom + 0.006, 0.010, 5), make.n(48));
+                      pulley(crankRadius, beltTo - beltFrom + 0.006, 0.010, 5), make.n(40));
     append(
         mesh,
         lathe(

@@ -15,23 +15,6 @@ using namespace engine;
 
 constexpr double jacketBottom = 0.315, jacketTop = 0.432;
 
-// Axes of the coolant pipes, from the jacket's wall to the plug's far side.
-Path inletPath(const Make& make) {
-    return bentPath(
-        {{cylinder(1), 0.066, 0.350}, {cylinder(1), 0.118, 0.350}, {cylinder(1) - 0.05, 0.135, 0.29}}, 0.03,
-        make.n(8));
-}
-Path outletPath(const Make& make) {
-    return bentPath({{0.506, 0, 0.405}, {0.548, 0, 0.405}, {0.556, 0, 0.47}, {0.556, 0, 0.50}}, 0.026,
-                    make.n(8));
-}
-
-// The path less its last `d`; the last straight piece must be longer.
-Path trimmed(Path path, double d) {
-    path.back() -= normalized(path.back() - path[path.size() - 2]) * d;
-    return path;
-}
-
 // Union of four circles: points of each circle that lie outside of the others, and the crossings between.
 Loop2 scalloped(double radius, int n) {
     const double half = (cylinder(1) - cylinder(0)) / 2, cusp = std::sqrt(radius * radius - half * half);
@@ -54,34 +37,14 @@ Loop2 scalloped(double radius, int n) {
     return loop;
 }
 
-// Grows a coolant bore out of the jacket's wall about the outline point nearest to `at`.
-void openJacket(Mesh& mesh, const Loop2& outline, int rows, Vec2 at, double height, double z0, double z1,
-                const Path& path, bool capped) {
-    const std::size_t n = outline.size(), middle = nearest(outline, at) + n;
-    std::size_t i0 = middle, i1 = middle;
-    const auto apart = [&](std::size_t i) {
-        const Vec2 d = outline[i % n] - at;
-        return std::sqrt(dot(d, d));
-    };
-    while (apart(i0 - 1) < 0.016) --i0;
-    while (apart(i1 + 1) < 0.016) ++i1;
-    const double row = (z1 - z0) / rows;
-    const auto l0 = std::size_t(std::ceil((height - 0.016 - z0) / row)),
-               l1 = std::size_t((height + 0.016 - z0) / row);
-    if (i0 >= n) i0 -= n, i1 -= n;
-    growPipe(mesh, perforate(mesh, n, l0, l1, i0, i1), path, 0.013, capped);
-}
-
 Mesh jacket(const Make& make) {
     const double z0 = jacketBottom, z1 = jacketTop;
-    const int rows = make.n(20), n = make.n(72);
+    const int rows = make.n(16), n = make.n(64);
     const Loop2 outline = scalloped(jacketOuter, n);
     Mesh walls = extrude(upright({}), outline, boreCircles(jacketInner, make.n(48)), levels(z0, z1, rows),
                          {true, !make.dirty()});
-    openJacket(walls, outline, rows, {cylinder(3) + jacketOuter, 0}, 0.405, z0, z1,
-               trimmed(outletPath(make), 0.006), !make.dirty());
-    openJacket(walls, outline, rows, {cylinder(1), jacketOuter}, 0.350, z0, z1,
-               trimmed(inletPath(make), 0.006), !make.dirty());
+    for (const Path& path : {coolantOutlet(make), coolantInlet(make)})
+        openWall(walls, outline, levels(z0, z1, rows), 0.016, trimmed(path, 0.006), 0.013, !make.dirty());
     if (make.dirty()) { // a lid with other segments, 0.4 mm above the open rim
         Mesh lid =
             extrude(upright({}), scalloped(jacketOuter, make.n(60)), boreCircles(jacketInner, make.n(40)),
@@ -102,7 +65,7 @@ Mesh plug(const Make& make, const Path& path) {
 
 // A thick pipe about the bore, closed beyond the plug, with a hose and its clamp over the end.
 Mesh coolantPipe(const Make& make, const Path& path) {
-    const int n = make.n(24);
+    const int n = make.n(20);
     Path longer = path;
     longer.back() += normalized(path.back() - path[path.size() - 2]) * 0.006;
     std::vector<Ring> rings = sweepRings(path, circle({}, 0.0155, n), {0.1, 0.2, 1});
@@ -120,10 +83,10 @@ Mesh coolantPipe(const Make& make, const Path& path) {
 
 void addEngineJacket(Parts& parts, const Make& make) {
     parts.push_back({"water_jacket", jacket(make)});
-    parts.push_back({"jacket_inlet", plug(make, inletPath(make))});
-    parts.push_back({"jacket_outlet", plug(make, outletPath(make))});
-    Mesh pipes = coolantPipe(make, inletPath(make));
-    append(pipes, coolantPipe(make, outletPath(make)));
+    parts.push_back({"jacket_inlet", plug(make, coolantInlet(make))});
+    parts.push_back({"jacket_outlet", plug(make, coolantOutlet(make))});
+    Mesh pipes = coolantPipe(make, coolantInlet(make));
+    append(pipes, coolantPipe(make, coolantOutlet(make)));
     // A flange where each leaves the block.
     append(pipes, extrude(Frame{{cylinder(1), 0.0715, 0.350}, {1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
                           roundedRectangle({-0.034, -0.022}, {0.034, 0.022}, 0.016, make.n(5)),

@@ -34,7 +34,7 @@ Mesh exhaustRunner(const Make& make, int c) {
                                 {foot.x, foot.y, 0.425 + (c == 0 || c == 3 ? 0 : 0.01)},
                                 foot - Vec3{0, 0, 0.002 + make.bite(3)}},
                                0.026, make.n(8));
-    return pipe(path, 0.0185, make.n(24));
+    return pipe(path, 0.0185, make.n(18));
 }
 
 // Four into one: from an oval block over a cone to a pipe with a flange, open at its end.
@@ -71,7 +71,7 @@ Mesh plenum(const Make& make) {
     }
     p.push_back({0, plenumTo});
     const Frame axis{{0, plenumY, plenumZ}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
-    Mesh mesh = lathe(axis, p, make.n(40));
+    Mesh mesh = lathe(axis, p, make.n(36));
     for (int i = 0; i < 6; ++i) { // stiffening ribs around
         const double x = 0.160 + 0.054 * i, r = plenumRadius;
         append(mesh, lathe(axis,
@@ -79,7 +79,7 @@ Mesh plenum(const Make& make) {
                             {r + 0.003, x - 0.002},
                             {r + 0.003, x + 0.002},
                             {r - 0.002, x + 0.003}},
-                           make.n(40), true));
+                           make.n(36), true));
     }
     return mesh;
 }
@@ -93,7 +93,7 @@ Mesh intakeRunner(const Make& make, int c) {
                                 {x, plenumY, plenumZ - plenumRadius + 0.006 + make.bite(2)}},
                                0.026, make.n(8));
     // Upright oval at the head to round at the plenum would twist the eye more than it shows: keep one oval.
-    Mesh mesh = sweep(path, roundedRectangle({-0.021, -0.017}, {0.021, 0.017}, 0.0165, make.n(6)), {0, 0, 1});
+    Mesh mesh = sweep(path, roundedRectangle({-0.021, -0.017}, {0.021, 0.017}, 0.0165, make.n(4)), {0, 0, 1});
     // Foot flange.
     append(mesh, roundedBox(Frame{{x, foot, 0.508}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}},
                             {{-0.024, -0.028}, {0.024, 0.028}, 0, 0.006, 0.015, 0.001, 0, make.n(4)}));
@@ -103,7 +103,7 @@ Mesh intakeRunner(const Make& make, int c) {
 // A bore open to the front with the closed valve in it.
 Mesh throttleBody(const Make& make) {
     const Frame forward{{plenumFrom + make.bite(2), plenumY, plenumZ}, {0, -1, 0}, {0, 0, 1}, {-1, 0, 0}};
-    const int n = make.n(40);
+    const int n = make.n(36);
     Mesh mesh = lathe(forward,
                       {{0, 0},
                        {0.033, 0},

@@ -23,7 +23,7 @@ Mesh flywheelHousing(const Make& make) {
                        {0.119, 0.020},
                        {0, 0.020}},
                       n);
-    append(mesh, extrude(axis, gear({}, 0.109, 0.112, make.n(40)), {}, {0.030, 0.042}));
+    append(mesh, extrude(axis, gear({}, 0.109, 0.112, make.n(32)), {}, {0.030, 0.042}));
     append(mesh, lathe(axis, {{0, 0.015}, {0.030, 0.015}, {0.030, 0.035}, {0.0, 0.035}}, make.n(32)));
     append(mesh, lathe(axis,
                        {{0, 0.036},
@@ -75,7 +75,7 @@ Mesh oilFilter(const Make& make) {
         p.push_back({0.029 + 0.008 * e.x, 0.078 + 0.010 * e.y});
     }
     p.push_back({0, 0.090});
-    Mesh mesh = lathe(axis, p, make.n(40));
+    Mesh mesh = lathe(axis, p, make.n(32));
     for (int i = 0; i < 16; ++i) { // grips
         const Vec2 e = unitCircle(i, 16) * 0.0368;
         append(mesh, lathe(Frame{axis.at(e.x, e.y, 0), axis.u, axis.v, axis.w},
@@ -88,7 +88,7 @@ Mesh dipstick(const Make& make) {
     const Path tube = bentPath(
         {{0.470, -0.100, 0.235}, {0.470, -0.128, 0.262}, {0.478, -0.118, 0.47}, {0.470, -0.105, 0.645}}, 0.03,
         make.n(8));
-    Mesh mesh = pipe(tube, 0.0048, make.n(12));
+    Mesh mesh = pipe(tube, 0.0048, make.n(10));
     const Vec3 d = normalized(tube.back() - tube[tube.size() - 2]);
     append(mesh,
            lathe(along(tube.back(), d),
@@ -122,7 +122,7 @@ Mesh mounts(const Make& make) {
                             {0.024, 0.182},
                             {0.024, 0.195},
                             {0, 0.195}},
-                           make.n(32)));
+                           make.n(24)));
         append(mesh, boltHead({x, side * 0.186, 0.211}, {0, 0, 1}, 0.016));
     }
     return mesh;

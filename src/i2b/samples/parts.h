@@ -45,6 +45,17 @@ constexpr double cylinder(int i) { return 0.152 + 0.096 * i; }
 
 // The four bores in plan view, n points each.
 std::vector<Loop2> boreCircles(double radius, int n);
+
+// Axes of the coolant bores, from inside the block's wall to 2 mm beyond the plug that closes each.
+Path coolantInlet(const Make& make);
+Path coolantOutlet(const Make& make);
+// The path less its last `d`; its last straight piece must be longer.
+Path trimmed(Path path, double d);
+
+// Grows a pipe of `radius` along the path out of the side wall of an upright extrusion (outline, heights),
+// through a hole of at least `half` to each side of the path's first point.
+void openWall(Mesh& mesh, const Loop2& outline, const std::vector<double>& heights, double half,
+              const Path& path, double radius, bool capped);
 } // namespace engine
 
 } // namespace i2b::samples
