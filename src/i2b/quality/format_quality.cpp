@@ -5,16 +5,17 @@
 namespace i2b {
 namespace {
 
-// A number as a C++ stream prints it by default: six significant digits.
-std::string num(double v) { return fmt::format("{:.6g}", v); }
-std::string vec(const Vec3& v) { return fmt::format("({:.6g} {:.6g} {:.6g})", v.x, v.y, v.z); }
-std::string boxText(const Box& b) { return vec(b.lo) + " " + vec(b.hi); }
 std::string directions(const std::array<int, 3>& d) { return fmt::format("({} {} {})", d[0], d[1], d[2]); }
 int sum(const std::array<int, 3>& d) { return d[0] + d[1] + d[2]; }
 
 class Text {
   public:
-    explicit Text(const QualityReport& report) : r_(report) {}
+    Text(const QualityReport& report, int digits) : r_(report), digits_(digits) {}
+
+    // As a C++ stream prints with that many significant digits.
+    std::string num(double v) const { return fmt::format("{:.{}g}", v, digits_); }
+    std::string vec(const Vec3& v) const { return fmt::format("({} {} {})", num(v.x), num(v.y), num(v.z)); }
+    std::string box(const Box& b) const { return vec(b.lo) + " " + vec(b.hi); }
 
     template <class... Args>
     void line(fmt::format_string<Args...> format, Args&&... args) {
@@ -30,6 +31,7 @@ class Text {
 
   private:
     const QualityReport& r_;
+    int digits_;
     std::string text_;
 };
 
@@ -48,7 +50,7 @@ void statistics(Text& t, const QualityReport& r) {
     t.line("    internal faces:   {}", r.internalFaces);
     t.line("    cells:            {}", r.cells);
     t.line("    faces per cell:   {}",
-           num(double(r.faces + r.internalFaces) / double(std::max<std::int64_t>(1, r.cells))));
+           t.num(double(r.faces + r.internalFaces) / double(std::max<std::int64_t>(1, r.cells))));
     t.line("    boundary patches: {}", r.patches.size());
     t.line("    point zones:      0\n    face zones:       0");
     t.line("    cell zones:       {}\n", r.zones.size());
@@ -74,7 +76,7 @@ void regions(Text& t, const QualityReport& r) {
     for (std::size_t i = 0; i < r.regions.size(); ++i)
         t.line("  <<Writing region {} ({}) with {} cells to cellSet region{}", i,
                r.regions[i].pointConnected ? "point connected" : "fully disconnected",
-               num(double(r.regions[i].cells)), i);
+               t.num(double(r.regions[i].cells)), i);
     t.set("multiRegionPoints", "points that are in multiple regions");
 }
 
@@ -150,7 +152,7 @@ void surfaces(Text& t, const QualityReport& r) {
     t.line("    {:<20}{:<9}{:<9}{:<34} Bounding box", "Patch", "Faces", "Points", "Surface topology");
     for (const PatchQuality& p : r.patches)
         t.line("    {:<20}{:<9}{:<9}{:<34}{}", p.name, p.faces, p.points, topologyText(p.topology),
-               p.points > 0 ? " " + boxText(p.box) : "");
+               p.points > 0 ? " " + t.box(p.box) : "");
     t.line("\nChecking faceZone topology for multiply connected surfaces...\n    No faceZones found.");
     t.set("nonManifoldPoints", "conflicting points");
     t.line("\nChecking basic cellZone addressing...");
@@ -159,8 +161,8 @@ void surfaces(Text& t, const QualityReport& r) {
     else
         t.line("    {:<20}{:<13}{:<13}{:<13}BoundingBox", "CellZone", "Cells", "Points", "Volume");
     for (const ZoneQuality& z : r.zones)
-        t.line("    {:<19} {:<12} {:<12} {:<12} {}", z.name, z.cells, z.points, num(z.volume),
-               boxText(z.box));
+        t.line("    {:<19} {:<12} {:<12} {:<12} {}", z.name, z.cells, z.points, t.num(z.volume),
+               t.box(z.box));
 }
 
 void alignment(Text& t, const QualityReport& r) {
@@ -169,7 +171,8 @@ void alignment(Text& t, const QualityReport& r) {
     t.line("    Mesh has {} solution (non-empty) directions {}", sum(r.solutionDirections),
            directions(r.solutionDirections));
     if (sum(r.geometricDirections) == 3) return;
-    for (const WedgeQuality& w : r.wedges) t.line("    Wedge {} with angle {} degrees", w.name, num(w.angle));
+    for (const WedgeQuality& w : r.wedges)
+        t.line("    Wedge {} with angle {} degrees", w.name, t.num(w.angle));
     if (r.misalignedEdges > 0)
         t.line(" ***Number of edges not aligned with or perpendicular to non-empty directions: {}",
                r.misalignedEdges);
@@ -181,18 +184,18 @@ void alignment(Text& t, const QualityReport& r) {
 void closedness(Text& t, const QualityReport& r) {
     const Vec3& o = r.boundaryOpenness;
     if (std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}) > r.limits.closedness)
-        t.line(" ***Boundary openness {} possible hole in boundary description.", vec(o));
+        t.line(" ***Boundary openness {} possible hole in boundary description.", t.vec(o));
     else
-        t.line("    Boundary openness {} OK.", vec(o));
+        t.line("    Boundary openness {} OK.", t.vec(o));
     if (r.openCells > 0) {
-        t.line(" ***Open cells found, max cell openness: {}, number of open cells {}", num(r.maxOpenness),
+        t.line(" ***Open cells found, max cell openness: {}, number of open cells {}", t.num(r.maxOpenness),
                r.openCells);
     } else if (r.highAspectRatioCells > 0) {
         t.line(" ***High aspect ratio cells found, Max aspect ratio: {}, number of cells {}",
-               num(r.maxAspectRatio), r.highAspectRatioCells);
+               t.num(r.maxAspectRatio), r.highAspectRatioCells);
     } else {
-        t.line("    Max cell openness = {} OK.", num(r.maxOpenness));
-        t.line("    Max aspect ratio = {} OK.", num(r.maxAspectRatio));
+        t.line("    Max cell openness = {} OK.", t.num(r.maxOpenness));
+        t.line("    Max aspect ratio = {} OK.", t.num(r.maxAspectRatio));
     }
     t.set("nonClosedCells", "non closed cells");
     t.set("highAspectRatioCells", "cells with high aspect ratio");
@@ -200,29 +203,29 @@ void closedness(Text& t, const QualityReport& r) {
 
 void sizes(Text& t, const QualityReport& r) {
     if (findCheck(r, "zeroAreaFaces") != nullptr)
-        t.line(" ***Zero or negative face area detected.  Minimum area: {}", num(r.minFaceArea));
+        t.line(" ***Zero or negative face area detected.  Minimum area: {}", t.num(r.minFaceArea));
     else
         t.line("    Minimum face area = {}. Maximum face area = {}.  Face area magnitudes OK.",
-               num(r.minFaceArea), num(r.maxFaceArea));
+               t.num(r.minFaceArea), t.num(r.maxFaceArea));
     t.set("zeroAreaFaces", "zero area faces");
     if (r.negativeVolumeCells > 0)
         t.line(" ***Zero or negative cell volume detected.  Minimum negative volume: {}, Number of negative "
                "volume "
                "cells: {}",
-               num(r.minVolume), r.negativeVolumeCells);
+               t.num(r.minVolume), r.negativeVolumeCells);
     else
         t.line("    Min volume = {}. Max volume = {}.  Total volume = {}.  Cell volumes OK.",
-               num(r.minVolume), num(r.maxVolume), num(r.totalVolume));
+               t.num(r.minVolume), t.num(r.maxVolume), t.num(r.totalVolume));
     t.set("zeroVolumeCells", "zero volume cells");
 }
 
 void directionsOfFaces(Text& t, const QualityReport& r) {
     if (r.internalFaces > 0)
-        t.line("    Mesh non-orthogonality Max: {} average: {}", num(r.maxNonOrthogonality),
-               num(r.meanNonOrthogonality));
+        t.line("    Mesh non-orthogonality Max: {} average: {}", t.num(r.maxNonOrthogonality),
+               t.num(r.meanNonOrthogonality));
     if (r.severeNonOrthogonalFaces > 0)
         t.line("   *Number of severely non-orthogonal (> {} degrees) faces: {}.",
-               num(r.limits.nonOrthogonality), r.severeNonOrthogonalFaces);
+               t.num(r.limits.nonOrthogonality), r.severeNonOrthogonalFaces);
     if (r.nonOrthogonalityErrors > 0)
         t.line(" ***Number of non-orthogonality errors: {}.", r.nonOrthogonalityErrors);
     else
@@ -236,9 +239,9 @@ void directionsOfFaces(Text& t, const QualityReport& r) {
     if (r.highlySkewFaces > 0)
         t.line(" ***Max skewness = {}, {} highly skew faces detected which may impair the quality of the "
                "results",
-               num(r.maxSkewness), r.highlySkewFaces);
+               t.num(r.maxSkewness), r.highlySkewFaces);
     else
-        t.line("    Max skewness = {} OK.", num(r.maxSkewness));
+        t.line("    Max skewness = {} OK.", t.num(r.maxSkewness));
     t.set("skewFaces", "skew faces");
     t.line("    Coupled point location match (average 0) OK.");
 }
@@ -251,28 +254,28 @@ void shapesOfFaces(Text& t, const QualityReport& r) {
         t.line("    Face tets OK.");
     t.set("lowQualityTetFaces", "faces with low quality or negative volume decomposition tets");
     if (r.shortEdgePoints > 0)
-        t.line("   *Edges too small, min/max edge length = {} {}, number too small: {}", num(r.minEdgeLength),
-               num(r.maxEdgeLength), r.shortEdgePoints);
+        t.line("   *Edges too small, min/max edge length = {} {}, number too small: {}",
+               t.num(r.minEdgeLength), t.num(r.maxEdgeLength), r.shortEdgePoints);
     else
-        t.line("    Min/max edge length = {} {} OK.", num(r.minEdgeLength), num(r.maxEdgeLength));
+        t.line("    Min/max edge length = {} {} OK.", t.num(r.minEdgeLength), t.num(r.maxEdgeLength));
     t.set("shortEdges", "points on short edges");
     if (const QualityCheck* near = findCheck(r, "nearPoints"))
         t.line("  <<Writing {} near (closer than {} apart) points to set nearPoints", near->count,
-               num(r.nearDistance));
+               t.num(r.nearDistance));
     if (r.concaveFaces > 0)
         t.line("   *There are {} faces with concave angles between consecutive edges. Max concave angle = {} "
                "degrees.",
-               r.concaveFaces, num(r.maxConcaveAngle));
+               r.concaveFaces, t.num(r.maxConcaveAngle));
     else
         t.line("    All angles in faces OK.");
     t.set("concaveFaces", "faces with concave angles");
     if (r.flatnessFaces > 0)
-        t.line("    Face flatness (1 = flat, 0 = butterfly) : min = {}  average = {}", num(r.minFaceFlatness),
-               num(r.meanFaceFlatness));
+        t.line("    Face flatness (1 = flat, 0 = butterfly) : min = {}  average = {}",
+               t.num(r.minFaceFlatness), t.num(r.meanFaceFlatness));
     if (r.warpedFaces > 0) {
         t.line("   *There are {} faces with ratio between projected and actual area < {}", r.warpedFaces,
-               num(r.limits.flatness));
-        t.line("    Minimum ratio (minimum flatness, maximum warpage) = {}", num(r.minFaceFlatness));
+               t.num(r.limits.flatness));
+        t.line("    Minimum ratio (minimum flatness, maximum warpage) = {}", t.num(r.minFaceFlatness));
     } else {
         t.line("    All face flatness OK.");
     }
@@ -281,11 +284,11 @@ void shapesOfFaces(Text& t, const QualityReport& r) {
 
 void cellsAndWeights(Text& t, const QualityReport& r) {
     if (r.cells > 0)
-        t.line("    Cell determinant (wellposedness) : minimum: {} average: {}", num(r.minDeterminant),
-               num(r.meanDeterminant));
+        t.line("    Cell determinant (wellposedness) : minimum: {} average: {}", t.num(r.minDeterminant),
+               t.num(r.meanDeterminant));
     if (r.smallDeterminantCells > 0)
         t.line(" ***Cells with small determinant (< {}) found, number of cells: {}",
-               num(r.limits.determinant), r.smallDeterminantCells);
+               t.num(r.limits.determinant), r.smallDeterminantCells);
     else
         t.line("    Cell determinant check OK.");
     t.set("underdeterminedCells", "under-determined cells");
@@ -295,20 +298,20 @@ void cellsAndWeights(Text& t, const QualityReport& r) {
         t.line("    Concave cell check OK.");
     t.set("concaveCells", "concave cells");
     if (r.internalFaces > 0)
-        t.line("    Face interpolation weight : minimum: {} average: {}", num(r.minFaceWeight),
-               num(r.meanFaceWeight));
+        t.line("    Face interpolation weight : minimum: {} average: {}", t.num(r.minFaceWeight),
+               t.num(r.meanFaceWeight));
     if (r.lowWeightFaces > 0)
         t.line(" ***Faces with small interpolation weight (< {}) found, number of faces: {}",
-               num(r.limits.faceWeight), r.lowWeightFaces);
+               t.num(r.limits.faceWeight), r.lowWeightFaces);
     else
         t.line("    Face interpolation weight check OK.");
     t.set("lowWeightFaces", "faces with low interpolation weights");
     if (r.internalFaces > 0)
-        t.line("    Face volume ratio : minimum: {} average: {}", num(r.minVolumeRatio),
-               num(r.meanVolumeRatio));
+        t.line("    Face volume ratio : minimum: {} average: {}", t.num(r.minVolumeRatio),
+               t.num(r.meanVolumeRatio));
     if (r.lowVolumeRatioFaces > 0)
         t.line(" ***Faces with small volume ratio (< {}) found, number of faces: {}",
-               num(r.limits.volumeRatio), r.lowVolumeRatioFaces);
+               t.num(r.limits.volumeRatio), r.lowVolumeRatioFaces);
     else
         t.line("    Face volume ratio check OK.");
     t.set("lowVolRatioFaces", "faces with low volume ratio cells");
@@ -316,13 +319,13 @@ void cellsAndWeights(Text& t, const QualityReport& r) {
 
 } // namespace
 
-std::string formatQuality(const QualityReport& report) {
-    Text t(report);
+std::string formatQuality(const QualityReport& report, int digits) {
+    Text t(report, digits);
     statistics(t, report);
     topology(t, report);
     surfaces(t, report);
     t.line("\nChecking geometry...");
-    t.line("    Overall domain bounding box {}", boxText(report.box));
+    t.line("    Overall domain bounding box {}", t.box(report.box));
     alignment(t, report);
     closedness(t, report);
     sizes(t, report);

@@ -3,6 +3,8 @@
 #include "i2b/quality/measure_steps.h"
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <compare>
 
 namespace i2b {
 namespace {
@@ -146,14 +148,107 @@ void checkFace(const PolyMesh& mesh, const Rows& pointFaces, std::int32_t f, Sha
     part.nonConsecutive += outOfStep ? 1 : 0;
 }
 
+// Filter: which faces can be of an odd pair at all? Two faces that share points oddly share some two that are
+// no edge of one of the faces (a diagonal of it), or they are the same triangle, or one repeats a vertex. At
+// each point the diagonals to higher points must lead to points that nothing else at this point leads to. A
+// table of bits finds the exceptions, and now and then a false one.
+class OddPoints {
+  public:
+    OddPoints(const PolyMesh& mesh, const Rows& pointFaces) : mesh_(mesh), pointFaces_(pointFaces) {}
+
+    void mark(std::int32_t p, std::vector<std::uint8_t>& suspects) {
+        if (!maybeOdd(p)) return;
+        spokes_.clear();
+        for (const std::int32_t f : pointFaces_[p]) addSpokes(p, f);
+        std::sort(spokes_.begin(), spokes_.end());
+        for (Index i = 0, j = 0; i < spokes_.size(); i = j) {
+            bool odd = false;
+            for (; j < spokes_.size() && spokes_[j].to == spokes_[i].to; ++j)
+                odd = odd || spokes_[j].diagonal ||
+                      (j > i && spokes_[j].third >= 0 && spokes_[j].third == spokes_[j - 1].third);
+            if (!odd || j - i < 2) continue;
+            for (Index k = i; k < j; ++k)
+                std::atomic_ref<std::uint8_t>(suspects[Index(spokes_[k].face)])
+                    .store(1, std::memory_order_relaxed);
+        }
+    }
+
+  private:
+    struct Spoke {                    // from p to a higher point of the same face
+        std::int32_t to, third, face; // third: a triangle's last vertex, else -1
+        bool diagonal;
+        friend auto operator<=>(const Spoke&, const Spoke&) = default;
+    };
+    static constexpr std::uint32_t words = 16;
+    using Bits = std::array<std::uint64_t, words>;
+
+    static bool set(Bits& bits, std::int32_t point) { // was it set?
+        const std::uint32_t hash = (static_cast<std::uint32_t>(point) * 2654435769U) >> 22;
+        const std::uint64_t bit = std::uint64_t(1) << (hash % 64);
+        const bool was = (bits[hash / 64] & bit) != 0;
+        bits[hash / 64] |= bit;
+        return was;
+    }
+
+    bool maybeOdd(std::int32_t p) const {
+        Bits edges{}, diagonals{};
+        bool odd = false;
+        for (const std::int32_t f : pointFaces_[p]) {
+            const Face v = mesh_.face(f);
+            if (v.size() == 3) return true;
+            const auto at = static_cast<Index>(std::find(v.begin(), v.end(), p) - v.begin());
+            const Index after = wrapped(at, 1, v.size()), before = wrapped(at, -1, v.size());
+            for (Index i = 0; i < v.size(); ++i) {
+                if (v[i] <= p) {
+                    odd = odd || (v[i] == p && i != at);
+                    continue;
+                }
+                if (i == after || i == before)
+                    set(edges, v[i]);
+                else
+                    odd = set(diagonals, v[i]) || odd;
+            }
+        }
+        std::uint64_t both = 0;
+        for (Index w = 0; w < words; ++w) both |= edges[w] & diagonals[w];
+        return odd || both != 0;
+    }
+
+    void addSpokes(std::int32_t p, std::int32_t f) {
+        const Face v = mesh_.face(f);
+        const auto at = static_cast<Index>(std::find(v.begin(), v.end(), p) - v.begin());
+        for (Index i = 0; i < v.size(); ++i) {
+            if (v[i] <= p) continue;
+            const bool edge = i == wrapped(at, 1, v.size()) || i == wrapped(at, -1, v.size());
+            spokes_.push_back({v[i], v.size() == 3 ? v[0] ^ v[1] ^ v[2] ^ p ^ v[i] : -1, f, !edge});
+        }
+    }
+
+    const PolyMesh& mesh_;
+    const Rows& pointFaces_;
+    std::vector<Spoke> spokes_;
+};
+
+std::vector<std::uint8_t> suspectFaces(const Measurement& m, const Rows& pointFaces) {
+    std::vector<std::uint8_t> suspects(static_cast<Index>(m.mesh.faces()), 0);
+    parallelChunks(m.mesh.points.size(), 2048, [&](Index begin, Index end, Index) {
+        OddPoints odd(m.mesh, pointFaces);
+        for (Index p = begin; p < end; ++p) odd.mark(static_cast<std::int32_t>(p), suspects);
+    });
+    // A repeated vertex counts twice with every face that has it.
+    if (m.report.faultyFaceVertices > 0) std::fill(suspects.begin(), suspects.end(), std::uint8_t(1));
+    return suspects;
+}
+
 } // namespace
 
 void measureFaceFaces(Measurement& m, const Rows& pointFaces) {
+    const std::vector<std::uint8_t> suspects = suspectFaces(m, pointFaces);
     PairPart total;
-    orderedLoop(static_cast<Index>(m.mesh.faces()), total, [&](Index begin, Index end, PairPart& part) {
+    orderedLoop(suspects.size(), total, [&](Index begin, Index end, PairPart& part) {
         SharedCounts counts;
         for (Index f = begin; f < end; ++f)
-            checkFace(m.mesh, pointFaces, static_cast<std::int32_t>(f), counts, part);
+            if (suspects[f] != 0) checkFace(m.mesh, pointFaces, static_cast<std::int32_t>(f), counts, part);
     });
     m.report.baffleFaces = total.baffles;
     m.report.duplicateFaces = total.duplicates;

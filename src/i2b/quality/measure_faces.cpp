@@ -38,6 +38,22 @@ int repeatedVertices(std::span<const std::int32_t> v) {
     return repeated;
 }
 
+// Does every corner clearly turn with the normal? Of two unit vectors the dot product is then far above the
+// limit that concavitySine compares it with, which is the rounding error; no roots, no divisions.
+bool clearlyConvex(const PolyMesh& mesh, std::span<const std::int32_t> v, const Vec3& area) {
+    const auto point = [&](Index i) -> const Vec3& { return mesh.points[Index(v[i])]; };
+    const double area2 = norm2(area);
+    Vec3 before = point(0) - point(v.size() - 1);
+    for (Index i = 0; i < v.size(); ++i) {
+        const Vec3 edge = point(i + 1 == v.size() ? 0 : i + 1) - point(i);
+        const Vec3 turn = cross(before, edge);
+        const double along = dot(turn, area);
+        if (!(along > 0 && along * along > 1e-16 * norm2(turn) * area2 && along > 1e-140)) return false;
+        before = edge;
+    }
+    return true;
+}
+
 // Sine of the largest angle at which two consecutive edges turn against the normal; 0: none over the limit.
 double concavitySine(const PolyMesh& mesh, std::span<const std::int32_t> v, const Vec3& area, double areaSize,
                      double maxSine) {
@@ -118,7 +134,8 @@ void measureFaces(Measurement& m) {
                 part.edge2.add(length2);
                 if (length2 < short2) mark(m.shortPoints, a), mark(m.shortPoints, b);
             }
-            const double sine = concavitySine(mesh, v, shape.area, area, maxSine);
+            const double sine =
+                clearlyConvex(mesh, v, shape.area) ? 0 : concavitySine(mesh, v, shape.area, area, maxSine);
             part.maxConcaveSine = std::max(part.maxConcaveSine, sine);
             if (sine > small) part.concave.hit(id, sine);
             flat[f % block] = -1;

@@ -42,7 +42,7 @@ void measureDirections(Measurement& m); // empty and wedge patches; needs faceAr
 void measureAlignment(Measurement& m);  // of edges, where a direction is empty; needs the directions
 void measurePoints(Measurement& m,
                    const Rows& pointFaces); // unused, internal, near points (after measureFaces); edges
-void measureFaceFaces(Measurement& m, const Rows& pointFaces); // pairs of faces that share points oddly
+void measureFaceFaces(Measurement& m, const Rows& pointFaces); // pairs that share points oddly; after measureFaces
 void measureRegions(Measurement& m);
 void measurePatches(Measurement& m);
 void measureZones(Measurement& m); // needs cellVolume

@@ -115,9 +115,10 @@ struct QualityReport {
 // PolyMesh::validate() says about ranges); anything else may be wrong with the mesh. Deterministic on any number of threads.
 QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits = {});
 
-// The report in checkMesh's own lines, order and six significant digits, from "Mesh stats" to the verdict, so that
+// The report in checkMesh's own lines and order, from "Mesh stats" to the verdict, so that
 // a diff shows where the two differ. Left out: what checkMesh says about files it writes for regions and point zones.
-std::string formatQuality(const QualityReport& report);
+// digits: significant ones; checkMesh prints as many as the case's writePrecision says, by default 6.
+std::string formatQuality(const QualityReport& report, int digits = 6);
 
 // The named check, or null where nothing fails it.
 const QualityCheck* findCheck(const QualityReport& report, std::string_view name);
