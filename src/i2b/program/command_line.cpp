@@ -190,12 +190,12 @@ struct Parser {
         addMesher("regions", "Show what would be painted: regions, seeds, leaks", Command::regions);
         CLI::App& inspect = command("inspect", "Show what the geometry holds", Command::inspect);
         inspect.add_option("files", files, "The geometry files")->type_name("FILE")->required();
-        addShared(inspect, {"scale", "feature-angle", "threads"});
+        addShared(inspect, {"scale", "feature-angle", "threads", "quiet"});
         CLI::App& check = command("check", "Measure the quality of any OpenFOAM polyMesh", Command::check);
         check.add_option("case", line.caseFolder, "The OpenFOAM case, or its polyMesh folder")->required();
         check.add_option("--geometry", files, "Measure also how well the walls fit these files")
             ->type_name("FILE...");
-        addShared(check, {"scale", "feature-angle", "threads"});
+        addShared(check, {"scale", "feature-angle", "threads", "quiet"});
         CLI::App& sample =
             command("sample", "Write a built-in geometry; without a name, list them", Command::sample);
         sample.add_option("name", line.sample, "Its name");

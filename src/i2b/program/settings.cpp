@@ -52,7 +52,7 @@ const std::array table{
             I2B_FIELD(bool, options.output.ascii)},
     Setting{"out", "DIR", "Folder for the results", I2B_FIELD(std::string, options.output.folder)},
     Setting{"threads", "N", "Threads to use; 0: all the machine has", I2B_FIELD(int, options.threads)},
-    Setting{"quiet", "", "Print nothing but errors", I2B_FIELD(bool, quiet)},
+    Setting{"quiet", "", "Print nothing but errors and what was asked for", I2B_FIELD(bool, quiet)},
 };
 
 #undef I2B_FIELD
