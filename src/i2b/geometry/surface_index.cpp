@@ -129,7 +129,7 @@ TriangleTree buildTriangleTree(const Surface& surface) {
     arguments.maxDepth = 60;
     arguments.maxLeafSize = leafSize;
     arguments.traversalCost = 1;
-    arguments.intersectionCost = 2;
+    arguments.intersectionCost = 1;
     arguments.bvh = bvh;
     arguments.primitives = primitives.data();
     arguments.primitiveCount = arguments.primitiveArrayCapacity = primitives.size();

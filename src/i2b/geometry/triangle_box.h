@@ -26,9 +26,9 @@ class TriangleBoxTest {
     void setup(const Vec3& a, const Vec3& b, const Vec3& c);
     // True if the triangle meets the closed box [lo, hi].
     bool meets(const Vec3& lo, const Vec3& hi) const;
-    // The boxes of a row along x, all with the same y and z: exactly those with hi.x >= first and lo.x <=
-    // last meet the triangle (first may exceed last by less than a box). False if none does. A row of any
-    // length for the price of two boxes.
+    // The boxes of a row along x, all with the same y and z: those with hi.x >= first and lo.x <= last meet
+    // the triangle (first may exceed last by less than a box). False if none does. Decides a row of any
+    // length for the price of a few boxes; at most more to the hit side than meets(), by a rounding of x.
     bool row(double yLo, double yHi, double zLo, double zHi, double& first, double& last) const;
     const Box& bounds() const { return bounds_; }
 
