@@ -3,6 +3,7 @@
 #include "i2b/write/foam_write.h"
 #include "i2b/write/ply_write.h"
 #include "i2b/write/vtu_write.h"
+#include "write/ball_sample.h"
 #include "write/mesh_samples.h"
 #include <chrono>
 #include <fmt/format.h>
@@ -65,4 +66,17 @@ int main(int argc, char** argv) {
     measure("ply all patches", folder / "a.ply", [&] {
         writePly(mesh, folder / "a.ply", context, {"bottom", "sides"});
     });
+
+    const test::Ball ball(6);
+    fmt::print(
+        "ball: {} cells, {} cut\n",
+        [&] {
+            std::uint64_t cells = 0;
+            for (const auto& level : ball.grid.levels) cells += level.cells->activeVoxelCount();
+            return cells;
+        }(),
+        ball.cut.levels.back()->activeVoxelCount());
+    measure("vdb", folder / "a.vdb", [&] { ball.write(folder / "a.vdb"); });
+    measure("vdb masks alone", folder / "b.vdb",
+            [&] { ball.write(folder / "b.vdb", {.caseName = {}, .version = {}, .values = false}); });
 }
