@@ -151,6 +151,19 @@ TEST(EngineSample, CracksScaleWithDirt) {
     EXPECT_NEAR(clean.z, -0.5e-3, 1e-9);
 }
 
+// Overlaps have the depths that were chosen and grow with dirt; clean parts overlap by 1 mm there.
+TEST(EngineSample, OverlapsScaleWithDirt) {
+    for (const double dirt : {0.0, 0.5, 1.0, 2.0}) {
+        const Surface s = makeSample("engine", {dirt, 1});
+        const auto box = [&](const char* name) { return boundsOf(s, partNamed(s, name)); };
+        const auto depth = [&](double mm) { return dirt > 0 ? 1e-3 * mm * dirt : 1e-3; };
+        EXPECT_NEAR(box("exhaust_runner_2").hi.y - -0.088, depth(1), 1e-9);                 // into the head
+        EXPECT_NEAR(0.351 - box("exhaust_runner_2").lo.z, depth(3), 1e-9);                  // the collector
+        EXPECT_NEAR(box("throttle_body").hi.x - box("intake_plenum").lo.x, depth(2), 1e-9); // the plenum
+        EXPECT_LT(box("throttle_body").lo.x, box("intake_plenum").lo.x);
+    }
+}
+
 // The contract of the paper: holes smaller than the cells do not matter. At 2 mm and more, wherever the
 // lattice lies, the flow outside reaches no hollow of the engine, clean or dirty.
 TEST(EngineSample, OutsideIsClosedForCellsOfTwoMillimetres) {

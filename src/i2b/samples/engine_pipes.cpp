@@ -7,7 +7,8 @@ namespace {
 
 using namespace engine;
 
-constexpr Vec3 collector{0.300, -0.178, 0.345}; // top of it, where the runners come in
+constexpr Vec3 collector{0.300, -0.178, 0.345}; // where the runners come in
+constexpr double collectorRim = 0.006;          // height of its top above that
 
 Mesh exhaustFlange(const Make& make) {
     // On the head's ribs and port faces; drawn in (x, z), growing towards -y.
@@ -29,17 +30,18 @@ Mesh exhaustRunner(const Make& make, int c) {
     // Foot in the collector: two by two.
     const Vec3 foot = collector + Vec3{c < 2 ? -0.017 : 0.017, c == 0 || c == 3 ? -0.015 : 0.015, 0};
     const double reach = c == 0 || c == 3 ? -0.030 : 0;
-    const Path path = bentPath({{cylinder(c), -headHalf - 0.001 + make.bite(1) - 0.002, 0.505},
-                                {cylinder(c), foot.y + reach * 0.3, 0.495},
+    const Path path = bentPath({{cylinder(c), -headHalf + make.bite(1), 0.505},
+                                {cylinder(c), foot.y + reach * 0.3, 0.505},
                                 {foot.x, foot.y, 0.425 + (c == 0 || c == 3 ? 0 : 0.01)},
-                                foot - Vec3{0, 0, 0.002 + make.bite(3)}},
+                                foot + Vec3{0, 0, collectorRim - make.bite(3)}},
                                0.026, make.n(8));
     return pipe(path, 0.0185, make.n(18));
 }
 
 // Four into one: from an oval block over a cone to a pipe with a flange, open at its end.
 Mesh exhaustCollector(const Make& make) {
-    const Frame down{{collector.x, collector.y, collector.z + 0.006}, {1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+    const Frame down{
+        {collector.x, collector.y, collector.z + collectorRim}, {1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
     const int n = make.n(6);
     const Loop2 oval = roundedRectangle({-0.040, -0.038}, {0.040, 0.038}, 0.022, n);
     const auto round = [&](double r) { return roundedRectangle({-r, -r}, {r, r}, r * 0.999, n); };

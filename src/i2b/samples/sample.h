@@ -6,11 +6,11 @@
 //          mm and more, its water jacket (seed "jacket") for cells of 3 mm and more, at dirt <= 1. At dirt >
 //          0 it has:
 //            cracks       0.2 to 1 mm times dirt between parts, hidden faces missing behind them
-//            overlaps     parts that run 1 to 3 mm (times dirt) into one another without a shared edge
-//            ribs         sheets glued to a wall: edges shared by three triangles
-//            borders      open on both sides with different tessellations (the lid of the water jacket)
-//            soup         triangles twice, some reversed, whole parts inside out, triangles of no area
-//            stray sheet  in the flow beside the exhaust manifold
+//            overlaps     parts that run 1 to 3 mm (times dirt) and more into one another without a shared
+//            edge ribs         sheets glued to a wall: edges shared by three triangles borders      open on
+//            both sides with different tessellations (the lid of the water jacket) soup         triangles
+//            twice, some reversed, whole parts inside out, triangles of no area stray sheet  in the flow
+//            beside the exhaust manifold
 // missile  Ogive nose, cylinder, boat tail and four sharp fins, 2 m long, along x, nose at the origin; parts
 // body
 //          and fin_1 .. fin_4. Dirty: cracks at the nose and under two fins, deeper roots of the others.
