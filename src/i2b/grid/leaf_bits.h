@@ -70,6 +70,18 @@ inline LeafBits neighbourDown(const LeafBits& b, const LeafBits& previous, int a
     return r;
 }
 
+// Drops the cells from `end` on along the axis.
+inline void clip(LeafBits& b, int axis, int end) {
+    if (end >= 8) return;
+    for (int x = 0; x < 8; ++x) {
+        std::uint64_t keep = ~std::uint64_t(0);
+        if (axis == 0) keep = x < end ? keep : 0;
+        if (axis == 1) keep = (std::uint64_t(1) << (8 * end)) - 1;
+        if (axis == 2) keep = ((std::uint64_t(1) << end) - 1) * zLow;
+        b[static_cast<std::size_t>(x)] &= keep;
+    }
+}
+
 // Face-connected flood of seed inside open (one node). A handful of passes, each over eight words.
 inline LeafBits flood(const LeafBits& seed, const LeafBits& open) {
     LeafBits m = seed;

@@ -7,7 +7,8 @@ RankedMask::RankedMask(Mask::ConstPtr mask, std::int64_t first) : mask_(std::mov
     starts_.resize(leaves_.size());
     parallelFor(leaves_.size(), [&](std::size_t i) { starts_[i] = leaves_[i]->onVoxelCount(); });
     size_ = exclusiveScan(starts_);
-    openvdb::tree::ValueAccessor<openvdb::Int32Tree> write(index_);
+    index_ = std::make_shared<openvdb::Int32Tree>(-1);
+    openvdb::tree::ValueAccessor<openvdb::Int32Tree> write(*index_);
     for (std::size_t i = 0; i < leaves_.size(); ++i) {
         const openvdb::Coord& o = leaves_[i]->origin();
         write.setValue({o.x() >> 3, o.y() >> 3, o.z() >> 3}, static_cast<std::int32_t>(i));

@@ -35,7 +35,7 @@ class RankedMask {
     // Not to be shared between threads: it remembers where it looked last.
     class Reader {
       public:
-        explicit Reader(const RankedMask& ranked) : ranked_(&ranked), index_(ranked.index_) {}
+        explicit Reader(const RankedMask& ranked) : ranked_(&ranked), index_(*ranked.index_) {}
         // -1 where the bit is not set.
         std::int64_t rank(const Index3& c);
         bool has(const Index3& c);
@@ -52,7 +52,7 @@ class RankedMask {
     Mask::ConstPtr mask_;
     std::vector<const MaskLeaf*> leaves_;
     std::vector<std::int64_t> starts_;
-    openvdb::Int32Tree index_{-1}; // leaf number at (leaf origin / 8)
+    std::shared_ptr<openvdb::Int32Tree> index_; // leaf number at (leaf origin / 8)
     std::int64_t first_ = 0, size_ = 0;
 };
 

@@ -3,5 +3,3 @@
 #pragma once
 #pragma GCC system_header
 #include <openvdb/openvdb.h>
-#include <openvdb/tools/Morphology.h>
-#include <openvdb/tree/LeafManager.h>

@@ -11,7 +11,6 @@
 #include "i2b/grid/mask_ops.h"
 #include "i2b/layers/layer_stack.h"
 #include "i2b/paint/paint.h"
-#include "i2b/quality/repair.h"
 #include <fmt/format.h>
 
 namespace i2b {

@@ -1,0 +1,59 @@
+// The part of the mesh that the fit moves: the prisms between front and wall, and the core cells within a few rings
+// of the front. Nodes are the wall positions b (one a fan), then core points: front points f, rings behind, and the
+// fixed points of the outermost cells.
+#pragma once
+#include "i2b/front/front.h"
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace i2b {
+
+// A corner tetrahedron: node[0] and its three neighbours along the edges of a cell, positively oriented. With
+// J = [(x1-x0)/length1, (x2-x0)/length2, (x3-x0)/length3] an ideal corner has J^T J = 1 and det J = 1.
+struct Corner {
+    std::array<std::int32_t, 4> node{};
+    std::array<float, 3> inverseLength{}; // 1/m
+    float weight = 1;                     // in the energy: prism corners count more
+};
+
+struct BandEdge {
+    std::int32_t a = 0, b = 0;
+    float weight = 1;                     // in Laplacians: h / lattice length, less across the front
+    friend auto operator<=>(const BandEdge& x, const BandEdge& y) {
+        return x.a != y.a ? x.a <=> y.a : x.b <=> y.b;
+    }
+    friend bool operator==(const BandEdge& x, const BandEdge& y) { return x.a == y.a && x.b == y.b; }
+};
+
+template <class T>
+struct Csr { // rows of values
+    std::vector<std::int64_t> start;      // rows + 1
+    std::vector<T> values;
+    std::span<const T> operator[](std::size_t row) const {
+        return {values.data() + start[row], values.data() + start[row + 1]};
+    }
+};
+
+struct Band {
+    std::size_t walls = 0;                // nodes [0, walls) are wall nodes, in fan order
+    std::size_t fronts = 0;               // nodes [walls, walls + fronts) are front points
+    std::size_t movable = 0;              // nodes [0, movable) move; the rest are fixed
+    std::vector<Vec3> start;              // m, per node: a valid state
+    std::vector<double> h;                // m, per node: edge of the finest cell around
+    std::vector<std::uint8_t> outside;    // per node: sides of the domain box that it lies in
+    std::vector<std::int32_t> corePoint;  // per node from walls on: number in the LatticeMesh
+    std::vector<std::int32_t> frontNode;  // per wall node: its front node
+    Csr<std::int32_t> fansOf;             // per front node (less walls): its wall nodes
+    std::vector<Corner> corners;
+    Csr<std::int32_t> cornersOf;          // per movable node
+    Csr<BandEdge> edges;                  // per node: a is the node itself, b the other end
+    Csr<std::int32_t> parents;            // per node: ends of the coarse edge or face on whose middle it hangs; or none
+
+    std::size_t nodes() const { return start.size(); }
+};
+
+Band buildBand(const LatticeMesh& mesh, const Front& front, int rings);
+
+} // namespace i2b

@@ -1,0 +1,29 @@
+// Arithmetic of corner tetrahedra, shared by the steps of the fit.
+#pragma once
+#include "i2b/fit/band.h"
+
+namespace i2b {
+
+inline double determinantOf(const Corner& c, const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x3) {
+    const double scale = double(c.inverseLength[0]) * double(c.inverseLength[1]) * double(c.inverseLength[2]);
+    return dot(cross(x1 - x0, x2 - x0), x3 - x0) * scale;
+}
+
+inline double energyOf(double trace, double det) {
+    if (!(det > 0)) return std::numeric_limits<double>::infinity();
+    const double root = std::cbrt(det);
+    return 0.25 * trace / (root * root) + 0.125 * (det + 1 / det);
+}
+
+// Colours 0, 1, ... such that nodes that share a corner differ; -1 for nodes that are not wanted. Greedy in node order.
+std::vector<std::int32_t> colourNodes(const Band& band, const std::vector<std::uint8_t>& wanted, std::int32_t& colours);
+
+// Drops the components of a move that would leave the sides of the domain box.
+inline Vec3 withinSides(Vec3 move, std::uint8_t outside) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (outside >> (2 * axis) & 3) move[axis] = 0;
+    }
+    return move;
+}
+
+} // namespace i2b

@@ -1,0 +1,227 @@
+#include "i2b/core/parallel.h"
+#include "i2b/fit/corner.h"
+#include "i2b/fit/fit.h"
+#include <Eigen/Dense>
+#include <algorithm>
+
+namespace i2b {
+namespace {
+
+// One corner as a function of one of its nodes: D is affine in that node's place x, |J|^2 quadratic. Both are exact
+// for any move of the node, so steps and line searches touch no memory.
+struct LocalCorner {
+    Vec3 gradient;         // of D
+    double det0 = 0;       // D at the node's present place
+    double quadratic = 0;  // trace = quadratic * |d|^2 + linear . d + trace0, with d the move from there
+    Vec3 linear;
+    double trace0 = 0;
+    double weight = 1;
+};
+
+LocalCorner localCorner(const Corner& c, std::size_t node, const std::vector<Vec3>& x) {
+    std::array<Vec3, 4> p;
+    int k = 0;
+    for (int i = 0; i < 4; ++i) {
+        p[std::size_t(i)] = x[static_cast<std::size_t>(c.node[std::size_t(i)])];
+        if (static_cast<std::size_t>(c.node[std::size_t(i)]) == node) k = i;
+    }
+    const std::array<double, 3> w{double(c.inverseLength[0]), double(c.inverseLength[1]), double(c.inverseLength[2])};
+    const double volume = w[0] * w[1] * w[2];
+    const std::array<Vec3, 3> e{p[1] - p[0], p[2] - p[0], p[3] - p[0]};
+    const std::array<Vec3, 3> g{cross(e[1], e[2]) * volume, cross(e[2], e[0]) * volume, cross(e[0], e[1]) * volume};
+    LocalCorner local;
+    local.weight = double(c.weight);
+    local.det0 = dot(g[0], e[0]);
+    for (std::size_t i = 0; i < 3; ++i) local.trace0 += norm2(e[i]) * w[i] * w[i];
+    if (k == 0) {
+        local.gradient = -(g[0] + g[1] + g[2]);
+        for (std::size_t i = 0; i < 3; ++i) {
+            local.quadratic += w[i] * w[i];
+            local.linear -= e[i] * (2 * w[i] * w[i]);
+        }
+    } else {
+        const auto i = static_cast<std::size_t>(k - 1);
+        local.gradient = g[i];
+        local.quadratic = w[i] * w[i];
+        local.linear = e[i] * (2 * w[i] * w[i]);
+    }
+    return local;
+}
+
+struct WallTerm { // weight * (normal . (b - point) / h)^2
+    double weight = 0;
+    Vec3 normal;
+    double offset = 0; // normal . (b - point) / h at the node's present place
+    double inverseH = 1;
+};
+
+double energyAt(const std::vector<LocalCorner>& corners, const WallTerm& wall, const Vec3& d) {
+    double sum = 0;
+    for (const LocalCorner& c : corners) {
+        const double det = c.det0 + dot(c.gradient, d);
+        if (!(det > 0)) return std::numeric_limits<double>::infinity();
+        const double phi = energyOf(c.trace0 + dot(c.linear, d) + c.quadratic * norm2(d), det);
+        sum += c.weight * phi * phi * phi;
+    }
+    const double r = wall.offset + dot(wall.normal, d) * wall.inverseH;
+    return sum + wall.weight * r * r;
+}
+
+void derivativesAt(const std::vector<LocalCorner>& corners, const WallTerm& wall, const Vec3& d, Eigen::Vector3d& gradient,
+                   Eigen::Matrix3d& hessian) {
+    gradient.setZero();
+    hessian.setZero();
+    const auto vec = [](const Vec3& v) { return Eigen::Vector3d(v.x, v.y, v.z); };
+    for (const LocalCorner& c : corners) {
+        const double det = c.det0 + dot(c.gradient, d);
+        const double trace = c.trace0 + dot(c.linear, d) + c.quadratic * norm2(d);
+        const double root = std::cbrt(det), d23 = 1 / (root * root);
+        const Eigen::Vector3d g = vec(c.gradient), t = vec(c.linear + d * (2 * c.quadratic));
+        const double phi = 0.25 * trace * d23 + 0.125 * (det + 1 / det);
+        const double slope = -(2.0 / 3) * 0.25 * trace * d23 / det + 0.125 * (1 - 1 / (det * det)); // d phi / d det
+        const Eigen::Vector3d dphi = 0.25 * d23 * t + slope * g;
+        Eigen::Matrix3d h = Eigen::Matrix3d::Identity() * (0.5 * c.quadratic * d23);
+        h -= (2.0 / 3) * 0.25 * d23 / det * (t * g.transpose() + g * t.transpose());
+        h += ((10.0 / 9) * 0.25 * trace * d23 / (det * det) + 0.25 / (det * det * det)) * (g * g.transpose());
+        gradient += c.weight * 3 * phi * phi * dphi;
+        hessian += c.weight * (3 * phi * phi * h + 6 * phi * (dphi * dphi.transpose()));
+    }
+    const double r = wall.offset + dot(wall.normal, d) * wall.inverseH;
+    const Eigen::Vector3d n = vec(wall.normal) * wall.inverseH;
+    gradient += 2 * wall.weight * r * n;
+    hessian += 2 * wall.weight * (n * n.transpose());
+}
+
+// The move of one node: a few Newton steps, each capped and halved until the energy falls.
+Vec3 bestMove(const std::vector<LocalCorner>& corners, const WallTerm& wall, std::uint8_t outside, double cap, int steps) {
+    Vec3 d;
+    double energy = energyAt(corners, wall, d);
+    for (int step = 0; step < steps; ++step) {
+        Eigen::Vector3d gradient;
+        Eigen::Matrix3d hessian;
+        derivativesAt(corners, wall, d, gradient, hessian);
+        for (int axis = 0; axis < 3; ++axis) { // nodes in a side of the domain stay there
+            if (!(outside >> (2 * axis) & 3)) continue;
+            gradient[axis] = 0;
+            hessian.row(axis).setZero();
+            hessian.col(axis).setZero();
+            hessian(axis, axis) = 1;
+        }
+        Eigen::Vector3d s = -hessian.ldlt().solve(gradient);
+        if (!s.allFinite() || s.dot(gradient) > 0) s = -gradient;
+        const double length = s.norm();
+        if (!(length > 0)) break;
+        if (length > cap) s *= cap / length;
+        bool moved = false;
+        for (int half = 0; half < 8; ++half, s *= 0.5) {
+            const Vec3 to = d + Vec3{s[0], s[1], s[2]};
+            const double e = energyAt(corners, wall, to);
+            if (!(e < energy)) continue;
+            d = to, energy = e, moved = true;
+            break;
+        }
+        if (!moved || s.norm() < 1e-4 * cap) break;
+    }
+    return d;
+}
+
+struct Floor { // the wall's pull on a node, weakened while its prism corners are poor
+    double factor = 1;
+    void update(double worst, double limit) {
+        if (worst < limit) factor *= 0.1;
+        else if (worst > 1.5 * limit) factor = std::min(1.0, factor * 10);
+    }
+};
+
+// Would the way from f to b newly cross geometry?
+bool crosses(const SurfaceIndex& index, const Vec3& f, const Vec3& b, double h) {
+    const SegmentHit hit = index.firstHit(f, b);
+    return hit && (1 - hit.t) * norm(b - f) > 0.05 * h;
+}
+
+bool pathsStayFree(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, std::size_t n, const Vec3& to) {
+    if (n < band.walls) {
+        const Vec3& f = x[static_cast<std::size_t>(band.frontNode[n])];
+        return !crosses(index, f, to, band.h[n]) || crosses(index, f, x[n], band.h[n]);
+    }
+    if (n >= band.walls + band.fronts) return true;
+    for (std::int32_t fan : band.fansOf[n - band.walls]) {
+        const Vec3& b = x[static_cast<std::size_t>(fan)];
+        if (crosses(index, to, b, band.h[n]) && !crosses(index, x[n], b, band.h[n])) return false;
+    }
+    return true;
+}
+
+} // namespace
+
+std::vector<std::int32_t> colourNodes(const Band& band, const std::vector<std::uint8_t>& wanted, std::int32_t& colours) {
+    std::vector<std::int32_t> colour(band.movable, -1);
+    colours = 0;
+    for (std::size_t n = 0; n < band.movable; ++n) {
+        if (!wanted[n]) continue;
+        std::uint64_t used = 0;
+        for (std::int32_t c : band.cornersOf[n]) {
+            for (std::int32_t m : band.corners[static_cast<std::size_t>(c)].node) {
+                if (static_cast<std::size_t>(m) < band.movable && colour[static_cast<std::size_t>(m)] >= 0) {
+                    used |= std::uint64_t(1) << std::min(63, colour[static_cast<std::size_t>(m)]);
+                }
+            }
+        }
+        // A front node and its wall nodes look at each other's place, corner or not.
+        const std::int32_t free = std::countr_one(used);
+        colour[n] = free;
+        colours = std::max(colours, free + 1);
+    }
+    return colour;
+}
+
+void minimiseEnergy(const Band& band, const SurfaceIndex& index, const std::vector<std::uint8_t>& active,
+                    std::vector<Vec3>& x, const EnergyOptions& options, const Context& context) {
+    std::int32_t colours = 0;
+    const std::vector<std::int32_t> colour = colourNodes(band, active, colours);
+    std::vector<std::vector<std::uint32_t>> nodes(static_cast<std::size_t>(colours));
+    for (std::size_t n = 0; n < band.movable; ++n) {
+        if (colour[n] >= 0) nodes[static_cast<std::size_t>(colour[n])].push_back(static_cast<std::uint32_t>(n));
+    }
+    std::vector<Floor> floors(band.walls);
+    for (double lambda : options.wallWeights) {
+        context.checkCancelled();
+        for (const std::vector<std::uint32_t>& group : nodes) {
+            parallelChunks(group.size(), 128, [&](std::size_t begin, std::size_t end, std::size_t) {
+                std::vector<LocalCorner> corners;
+                for (std::size_t i = begin; i < end; ++i) {
+                    const std::size_t n = group[i];
+                    corners.clear();
+                    double worst = 1;
+                    for (std::int32_t c : band.cornersOf[n]) {
+                        const Corner& corner = band.corners[static_cast<std::size_t>(c)];
+                        corners.push_back(localCorner(corner, n, x));
+                        if (n < band.walls) worst = std::min(worst, scaledJacobian(corner, x));
+                    }
+                    if (corners.empty()) continue;
+                    WallTerm wall;
+                    if (n < band.walls) {
+                        const Vec3& f = x[static_cast<std::size_t>(band.frontNode[n])];
+                        const WallTarget target = wallTarget(index, band, n, f, x[n]);
+                        if (lambda > 5) floors[n].update(worst, options.floor);
+                        if (target.found) {
+                            wall.inverseH = 1 / band.h[n];
+                            wall.weight = lambda * floors[n].factor;
+                            wall.normal = target.normal;
+                            wall.offset = dot(target.normal, x[n] - target.point) * wall.inverseH;
+                        }
+                    }
+                    Vec3 d = bestMove(corners, wall, band.outside[n], options.cap * band.h[n], options.newtonSteps);
+                    if (d == Vec3{}) continue;
+                    for (int half = 0; half < 3; ++half, d *= 0.5) {
+                        if (!pathsStayFree(band, index, x, n, x[n] + d)) continue;
+                        x[n] += d;
+                        break;
+                    }
+                }
+            });
+        }
+    }
+}
+
+} // namespace i2b

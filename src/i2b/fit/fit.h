@@ -1,0 +1,64 @@
+// Fitting the front to the wall: wall positions go to their closest points on the geometry, as seen from the fluid,
+// front and core points make room, and no accepted state inverts a cell corner.
+//
+// Method: Wang and Srinivasan (2002), section 4, smoothing and closest-point projection; where that would leave bad
+// cells, a blend back towards the valid start and a barrier energy of Knupp's condition-number kind, minimised node
+// by node. Steps: goals.cpp, blend.cpp, energy.cpp, snap.cpp.
+#pragma once
+#include "i2b/core/context.h"
+#include "i2b/fit/band.h"
+#include "i2b/geometry/features.h"
+#include "i2b/geometry/surface_index.h"
+#include "i2b/options.h"
+
+namespace i2b {
+
+// Height of the prisms at the start, in h: they are right by construction.
+inline constexpr double startThickness = 0.07;
+
+struct FitSummary {
+    std::size_t wallNodes = 0;
+    std::size_t blended = 0;      // wall nodes that reached their goal directly
+    std::size_t active = 0;       // nodes that the energy worked on
+    std::size_t onGeometry = 0;   // wall nodes within 0.01 h of their target
+};
+
+// Moves the front's vertices (front and wall positions, movedPoints). Every corner stays positive.
+FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& index, const FeatureGraph& features,
+                    const FitOptions& options, const Context& context);
+
+// --- steps, for tests and benchmarks -------------------------------------------------------------------------------
+
+// Where a wall node at b with its front node at f should go, as seen from the fluid side.
+struct WallTarget {
+    Vec3 point;
+    Vec3 normal;        // unit: direction of the distance, or of the triangle where b is on it
+    bool found = false;
+};
+WallTarget wallTarget(const SurfaceIndex& index, const Band& band, std::size_t wallNode, const Vec3& f, const Vec3& b);
+
+// Direct positions: smoothed front, projected wall, relaxed core (Jacobi; positions per node).
+std::vector<Vec3> goalPositions(const Band& band, const SurfaceIndex& index, int sweeps);
+
+// x = start + alpha (goal - start) with the largest alpha per node, bounded in slope, that leaves every corner good.
+// Gives alpha per movable node; x is filled.
+std::vector<double> blend(const Band& band, const std::vector<Vec3>& goal, std::vector<Vec3>& x);
+
+// Corner quality: phi = 0.75 |J|^2 / (3 D^(2/3)) + 0.125 (D + 1/D), infinite where D <= 0; 1 for the ideal corner.
+double cornerEnergy(const Corner& corner, const std::vector<Vec3>& x);
+double scaledJacobian(const Corner& corner, const std::vector<Vec3>& x);
+
+struct EnergyOptions {
+    std::vector<double> wallWeights{0.1, 10, 100, 1e3, 1e5, 1e6};
+    int newtonSteps = 3;
+    double floor = 0.15;          // scaled Jacobian below which the wall pulls less
+    double cap = 0.3;             // of h: longest step
+};
+// Gauss-Seidel over a colouring of the active nodes. active: per movable node.
+void minimiseEnergy(const Band& band, const SurfaceIndex& index, const std::vector<std::uint8_t>& active,
+                    std::vector<Vec3>& x, const EnergyOptions& options, const Context& context);
+
+// Moves wall nodes the whole, half or a quarter of the way to their targets where the corners stay good.
+void snapExactly(const Band& band, const SurfaceIndex& index, std::vector<Vec3>& x, double floor);
+
+} // namespace i2b

@@ -1,0 +1,154 @@
+#include "i2b/core/parallel.h"
+#include "i2b/fit/corner.h"
+#include "i2b/fit/fit.h"
+
+namespace i2b {
+namespace {
+
+// Closest point within the plane(s) of the domain sides that the node lies in, by alternating projections.
+ClosestPoint closestWithinSides(const SurfaceIndex& index, const Vec3& q, std::uint8_t outside, double radius) {
+    ClosestPoint c = index.closest(q, radius);
+    if (!c) c = index.closest(q);
+    if (outside == 0 || !c) return c;
+    Vec3 p = q;
+    for (int i = 0; i < 8; ++i) {
+        p += withinSides(c.point - p, outside);
+        const ClosestPoint next = index.closest(p);
+        const bool done = norm2(next.point - c.point) < 1e-20 * norm2(q - c.point);
+        c = next;
+        if (done) break;
+    }
+    p += withinSides(c.point - p, outside);
+    c.point = p;
+    return c;
+}
+
+Vec3 weightedMean(std::span<const BandEdge> edges, const std::vector<Vec3>& x) {
+    Vec3 sum;
+    double weight = 0;
+    for (const BandEdge& e : edges) {
+        sum += x[static_cast<std::size_t>(e.b)] * double(e.weight);
+        weight += double(e.weight);
+    }
+    return weight > 0 ? sum / weight : sum;
+}
+
+// Mean of the neighbours' moves: a lattice stays a lattice, whatever its levels.
+Vec3 meanMove(const Band& band, std::span<const BandEdge> edges, const std::vector<Vec3>& x) {
+    Vec3 sum;
+    double weight = 0;
+    for (const BandEdge& e : edges) {
+        const auto b = static_cast<std::size_t>(e.b);
+        sum += (x[b] - band.start[b]) * double(e.weight);
+        weight += double(e.weight);
+    }
+    return weight > 0 ? sum / weight : sum;
+}
+
+// A front node that would pass through geometry stops halfway to it.
+Vec3 stoppedByGeometry(const SurfaceIndex& index, const Vec3& from, const Vec3& to) {
+    const SegmentHit hit = index.firstHit(from, to);
+    return hit ? from + (to - from) * (0.5 * std::max(0.0, hit.t)) : to;
+}
+
+bool isFront(const Band& band, std::size_t n) { return n >= band.walls && n < band.walls + band.fronts; }
+
+void smoothSurface(const Band& band, const SurfaceIndex& index, std::vector<Vec3>& x) {
+    const std::vector<Vec3> old = x;
+    parallelFor(band.fronts, [&](std::size_t i) {
+        const std::size_t n = band.walls + i;
+        Vec3 sum;
+        double weight = 0;
+        for (const BandEdge& e : band.edges[n]) {
+            if (!isFront(band, static_cast<std::size_t>(e.b))) continue;
+            sum += old[static_cast<std::size_t>(e.b)] * double(e.weight);
+            weight += double(e.weight);
+        }
+        if (weight == 0) return;
+        const Vec3 move = withinSides((sum / weight - old[n]) * 0.7, band.outside[n]);
+        x[n] = stoppedByGeometry(index, band.start[n], old[n] + move);
+    });
+}
+
+void projectWalls(const Band& band, const SurfaceIndex& index, std::vector<Vec3>& x, bool first) {
+    const std::vector<Vec3> old = x;
+    parallelFor(band.walls, [&](std::size_t b) {
+        const Vec3& f = old[static_cast<std::size_t>(band.frontNode[b])];
+        Vec3 q = f;
+        if (!first) {
+            Vec3 sum;
+            double weight = 0;
+            for (const BandEdge& e : band.edges[b]) {
+                if (static_cast<std::size_t>(e.b) >= band.walls) continue;
+                sum += old[static_cast<std::size_t>(e.b)] * double(e.weight);
+                weight += double(e.weight);
+            }
+            const Vec3 mean = weight > 0 ? sum / weight : old[b];
+            q = old[b] * 0.5 + (mean + f) * 0.25;
+            q += withinSides(q - old[b], band.outside[b]) - (q - old[b]);
+        }
+        // Seen from the fluid side: what the way from the front meets first hides what lies behind.
+        const SegmentHit hit = index.firstHit(f, q);
+        if (hit && band.outside[b] == 0) q = f + (q - f) * hit.t;
+        const ClosestPoint c = closestWithinSides(index, q, band.outside[b], 4 * band.h[b]);
+        if (c) x[b] = c.point;
+    });
+}
+
+void relaxVolume(const Band& band, const SurfaceIndex& index, std::vector<Vec3>& x) {
+    const std::vector<Vec3> old = x;
+    parallelFor(band.movable - band.walls, [&](std::size_t i) {
+        const std::size_t n = band.walls + i;
+        const Vec3 to = isFront(band, n) ? weightedMean(band.edges[n], old) : band.start[n] + meanMove(band, band.edges[n], old);
+        const Vec3 moved = old[n] + withinSides(to - old[n], band.outside[n]);
+        x[n] = isFront(band, n) ? stoppedByGeometry(index, band.start[n], moved) : moved;
+    });
+    // Nodes that hang on a coarse edge or face stay on it; parents never hang themselves on the same level.
+    const std::vector<Vec3> relaxed = x;
+    parallelFor(band.movable - band.walls, [&](std::size_t i) {
+        const std::size_t n = band.walls + i;
+        const std::span<const std::int32_t> parents = band.parents[n];
+        if (parents.empty()) return;
+        Vec3 sum;
+        for (std::int32_t p : parents) sum += relaxed[static_cast<std::size_t>(p)];
+        x[n] = sum / static_cast<double>(parents.size());
+    });
+}
+
+} // namespace
+
+WallTarget wallTarget(const SurfaceIndex& index, const Band& band, std::size_t wall, const Vec3& f, const Vec3& b) {
+    WallTarget target;
+    const double h = band.h[wall], length = norm(f - b);
+    const std::uint8_t outside = band.outside[wall];
+    ClosestPoint c;
+    const SegmentHit hit = length > 0 && outside == 0 ? index.firstHit(f, b) : SegmentHit{};
+    if (hit && (1 - hit.t) * length > 1e-3 * h) {
+        c = {f + (b - f) * hit.t, 0, hit.triangle};
+    } else {
+        const Vec3 q = length > 0 ? b + withinSides(f - b, outside) * std::min(1.0, 0.1 * h / length) : b;
+        c = closestWithinSides(index, q, outside, 2 * h);
+    }
+    if (!c) return target;
+    target.found = true;
+    target.point = c.point;
+    const Vec3 away = b - c.point;
+    const double d = norm(away);
+    target.normal = d > 1e-6 * h ? away / d : index.normal(c.triangle);
+    if (target.normal == Vec3{}) target.normal = normalized(f - b);
+    target.normal = normalized(withinSides(target.normal, outside));
+    return target;
+}
+
+std::vector<Vec3> goalPositions(const Band& band, const SurfaceIndex& index, int sweeps) {
+    std::vector<Vec3> x = band.start;
+    smoothSurface(band, index, x);
+    projectWalls(band, index, x, true);
+    for (int i = 0; i < sweeps; ++i) {
+        relaxVolume(band, index, x);
+        projectWalls(band, index, x, false);
+    }
+    return x;
+}
+
+} // namespace i2b
