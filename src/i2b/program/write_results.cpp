@@ -3,8 +3,10 @@
 #include "i2b/write/foam_write.h"
 #include "i2b/write/ply_write.h"
 #include "i2b/write/report_write.h"
+#include "i2b/write/vdb_write.h"
 #include "i2b/write/vtu_write.h"
 #include <algorithm>
+#include <filesystem>
 
 namespace i2b {
 namespace {
@@ -27,6 +29,22 @@ void writeMeshFiles(const PolyMesh& mesh, const OutputOptions& output, AtomicFol
     if (wants(output, "ply")) writePly(mesh, folder.place("wall.ply"), context);
 }
 
+void writeGridFile(const GridResult& result, const Options& options, AtomicFolder& folder, Context& context) {
+    if (!wants(options.output, "vdb")) return;
+    Stage stage(context, "write grid");
+    stage.items = result.grid.cellCount();
+    const bool carved = !result.kept.levels.empty();
+    const VdbInput input{result.grid, &result.cut, &result.regions, carved ? &result.kept : nullptr,
+                         [&](const Vec3& p) { return result.index->closest(p).distance; }};
+    VdbWriteOptions vdb;
+    vdb.caseName = std::filesystem::path(options.output.folder).filename().string();
+    vdb.version = I2B_VERSION;
+    vdb.surfaceSize = options.size.surface;
+    vdb.minSize = result.field.minSize;
+    vdb.maxSize = result.field.lattice.h(0);
+    writeVdb(input, folder.place("grid.vdb"), vdb, context);
+}
+
 void writeReportFile(RunReport& report, const OutputOptions& output, AtomicFolder& folder,
                      const CompleteReport& complete) {
     complete(report);
@@ -39,14 +57,16 @@ void writeMeshResults(MeshResult& result, const Options& options, Context& conte
                       const CompleteReport& complete) {
     AtomicFolder folder(options.output.folder);
     writeMeshFiles(result.mesh, options.output, folder, context);
+    writeGridFile(*result.cartesian, options, folder, context);
     writeReportFile(result.report, options.output, folder, complete);
     context.checkCancelled();
     folder.commit();
 }
 
-void writeGridResults(const GridResult&, RunReport& report, const Options& options, Context& context,
+void writeGridResults(const GridResult& result, RunReport& report, const Options& options, Context& context,
                       const CompleteReport& complete) {
     AtomicFolder folder(options.output.folder);
+    writeGridFile(result, options, folder, context);
     writeReportFile(report, options.output, folder, complete);
     context.checkCancelled();
     folder.commit();
