@@ -113,4 +113,32 @@ inline PolyMesh levelJump() {
     return meshOfCells(std::move(points), cells);
 }
 
+// Two cubes that have one corner in common, point 6.
+inline PolyMesh cubesAtCorner() {
+    std::vector<Vec3> points = boxPoints({0, 0, 0}, {1, 1, 1});
+    const std::vector<Vec3> second = boxPoints({1, 1, 1}, {2, 2, 2});
+    points.insert(points.end(), second.begin() + 1, second.end());
+    return meshOfCells(std::move(points), {hexLoops(corners(0)), hexLoops({6, 8, 9, 10, 11, 12, 13, 14})});
+}
+
+// Two cubes that have one edge in common, from point 2 to point 6.
+inline PolyMesh cubesAtEdge() {
+    std::vector<Vec3> points = boxPoints({0, 0, 0}, {1, 1, 1});
+    const std::vector<Vec3> second = boxPoints({1, 1, 0}, {2, 2, 1});
+    for (const std::size_t i : {1, 2, 3, 5, 6, 7}) points.push_back(second[i]);
+    return meshOfCells(std::move(points), {hexLoops(corners(0)), hexLoops({2, 8, 9, 10, 6, 11, 12, 13})});
+}
+
+// Two cubes on each other whose common face is two boundary faces on the same points, the first and the last.
+inline PolyMesh cubesWithBaffle() {
+    PolyMesh mesh = columnOf({square(0), square(1), square(2)});
+    const std::vector<std::int32_t> shared(mesh.face(0).begin(), mesh.face(0).end());
+    mesh.neighbour.clear();
+    mesh.faceVertices.insert(mesh.faceVertices.end(), shared.rbegin(), shared.rend());
+    mesh.faceOffsets.push_back(static_cast<std::uint32_t>(mesh.faceVertices.size()));
+    mesh.owner.push_back(1);
+    mesh.patches.at(0) = {"wall", "wall", 0, mesh.faces()};
+    return mesh;
+}
+
 } // namespace i2b::test

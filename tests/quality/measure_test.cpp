@@ -151,12 +151,7 @@ TEST(MeasureQuality, OpenCell) {
 // Two cubes that touch at a corner are two regions joined by one point, and their common boundary is pinched
 // there.
 TEST(MeasureQuality, CubesAtACorner) {
-    std::vector<Vec3> points = boxPoints({0, 0, 0}, {1, 1, 1});
-    const std::vector<Vec3> second = boxPoints({1, 1, 1}, {2, 2, 2});
-    points.insert(points.end(), second.begin() + 1,
-                  second.end()); // its first corner is the first cube's last
-    const QualityReport r =
-        measureQuality(meshOfCells(points, {hexLoops(corners(0)), hexLoops({6, 8, 9, 10, 11, 12, 13, 14})}));
+    const QualityReport r = measureQuality(cubesAtCorner());
     ASSERT_EQ(r.regions.size(), 2U);
     EXPECT_TRUE(r.regions[0].pointConnected);
     EXPECT_THAT(idsOf(r, "multiRegionPoints"), ElementsAre(6));
@@ -166,11 +161,7 @@ TEST(MeasureQuality, CubesAtACorner) {
 
 // Two cubes that share an edge only: that edge has four boundary faces.
 TEST(MeasureQuality, CubesAtAnEdge) {
-    std::vector<Vec3> points = boxPoints({0, 0, 0}, {1, 1, 1});
-    const std::vector<Vec3> second = boxPoints({1, 1, 0}, {2, 2, 1});
-    std::array<std::int32_t, 8> p{2, 8, 9, 10, 6, 11, 12, 13};
-    for (const std::size_t i : {1, 2, 3, 5, 6, 7}) points.push_back(second[i]);
-    const QualityReport r = measureQuality(meshOfCells(points, {hexLoops(corners(0)), hexLoops(p)}));
+    const QualityReport r = measureQuality(cubesAtEdge());
     EXPECT_EQ(r.patches.at(0).topology, SurfaceTopology::sharedEdge);
     EXPECT_THAT(idsOf(r, "nonManifoldPoints"), ElementsAre(2, 6));
 }
@@ -178,14 +169,7 @@ TEST(MeasureQuality, CubesAtAnEdge) {
 // Two separate cubes with coincident faces on shared points: the pair is a baffle, and the edge check says
 // which.
 TEST(MeasureQuality, BaffleFaces) {
-    PolyMesh mesh = columnOf({square(0), square(1), square(2)});
-    // Turn the one internal face into two boundary faces on the same points.
-    const std::vector<std::int32_t> shared(mesh.face(0).begin(), mesh.face(0).end());
-    mesh.neighbour.clear();
-    mesh.faceVertices.insert(mesh.faceVertices.end(), shared.rbegin(), shared.rend());
-    mesh.faceOffsets.push_back(static_cast<std::uint32_t>(mesh.faceVertices.size()));
-    mesh.owner.push_back(1);
-    mesh.patches.at(0) = {"wall", "wall", 0, mesh.faces()};
+    const PolyMesh mesh = cubesWithBaffle();
     const QualityReport r = measureQuality(mesh);
     EXPECT_EQ(r.baffleFaces, 1);
     EXPECT_EQ(r.duplicateFaces, 0);
