@@ -71,14 +71,19 @@ std::string_view FoamScanner::peek() {
 }
 
 std::string_view FoamScanner::next() {
-    const std::string_view token = peek();
-    if (token.empty()) at_ = text_.size(), fail("the file ends too early");
+    const std::string_view token = peekSome();
     at_ = static_cast<std::size_t>(token.data() - text_.data()) + token.size();
     return token;
 }
 
+std::string_view FoamScanner::peekSome() {
+    const std::string_view token = peek();
+    if (token.empty()) at_ = text_.size(), fail("the file ends too early");
+    return token;
+}
+
 void FoamScanner::expect(std::string_view token) {
-    const std::string_view found = peek();
+    const std::string_view found = peekSome();
     if (found != token) fail(fmt::format("'{}' expected, but found '{}'", token, found.substr(0, 20)));
     next();
 }
@@ -102,21 +107,21 @@ void FoamScanner::readHeader() {
 }
 
 std::int64_t FoamScanner::integer() {
-    const std::string_view token = peek();
+    const std::string_view token = peekSome();
     std::int64_t value = 0;
     const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
-    if (token.empty() || error != std::errc() || end != token.data() + token.size())
+    if (error != std::errc() || end != token.data() + token.size())
         fail(fmt::format("a whole number expected, but found '{}'", token.substr(0, 20)));
     next();
     return value;
 }
 
 double FoamScanner::scalar() {
-    const std::string_view token = peek();
+    const std::string_view token = peekSome();
     double value = 0;
     const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
     // from_chars reports numbers too small to hold as out of range; they are as good as zero.
-    if (token.empty() || (error != std::errc() && error != std::errc::result_out_of_range) ||
+    if ((error != std::errc() && error != std::errc::result_out_of_range) ||
         end != token.data() + token.size())
         fail(fmt::format("a number expected, but found '{}'", token.substr(0, 20)));
     next();

@@ -32,6 +32,7 @@ class FoamScanner {
     [[noreturn]] void fail(const std::string& what) const;
 
   private:
+    std::string_view peekSome(); // fails at the end of the file
     void skipSpace();
     void readHeader();
     double scalar();
