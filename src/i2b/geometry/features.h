@@ -1,10 +1,11 @@
-// Edges and corners of a dirty soup that a mesh should show: points are welded, repeated triangles dropped, then
-// every edge is judged by the angle between its triangles, non-manifold edges too.
+// Edges and corners of a dirty soup that a mesh should show: points are welded, repeated triangles dropped,
+// then every edge is judged by the angle between its triangles, non-manifold edges too.
 #pragma once
 #include "i2b/core/vec.h"
 #include "i2b/geometry/surface.h"
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace i2b {
@@ -24,15 +25,22 @@ enum class EdgeKind : std::uint8_t {
 struct FeatureEdge {
     std::uint32_t a = 0, b = 0; // into FeatureGraph::points
     std::uint8_t kinds = 0;     // EdgeKind bits
-    float angle = 0;            // degrees, the largest among its triangles; 0 at a free edge
+    // Degrees between the planes of its triangles, 0 flat, 180 folded back, whatever their orientation; 0 at
+    // a free edge. Of three and more the worst angle between any two planes or, if larger, the fold of the
+    // triangle that no other continues.
+    float angle = 0;
 };
 
 struct FeatureGraph {
-    double weldTolerance = 0;               // m, the one used
-    std::vector<Vec3> points;               // m, welded; only those that an edge uses
-    std::vector<FeatureEdge> edges;         // a < b, ascending
-    std::vector<std::uint32_t> corners;     // points where not exactly two sharp edges meet, or they turn over the angle
-    // Counts over the whole welded soup, features or not.
+    double weldTolerance = 0;       // m, the one used
+    std::vector<Vec3> points;       // m, welded; only those that an edge uses
+    std::vector<FeatureEdge> edges; // a < b, ascending
+    // Points where not exactly two sharp edges meet, or they turn over the angle; ascending. The end of a
+    // sharp line that a fold of at least half the angle continues is none: there a bend fades, or a radius is
+    // tessellated unevenly.
+    std::vector<std::uint32_t> corners;
+    // Counts over the whole welded soup, features or not. Degenerate: welded to two points or one, or lower
+    // than the tolerance; such a needle's neighbours count as neighbours of each other.
     std::uint64_t weldedPoints = 0, duplicateTriangles = 0, degenerateTriangles = 0;
     std::uint64_t openEdges = 0, nonManifoldEdges = 0, sharpEdges = 0;
     double openEdgeLength = 0, sharpEdgeLength = 0; // m
