@@ -17,9 +17,9 @@ struct EdgeUse {
     friend auto operator<=>(const EdgeUse&, const EdgeUse&) = default;
 };
 
-std::vector<EdgeUse> patchEdges(const PolyMesh& mesh, const Patch& patch) {
-    std::vector<EdgeUse> uses(mesh.faceOffsets[Index(patch.start + patch.count)] -
-                              mesh.faceOffsets[Index(patch.start)]);
+RawVector<EdgeUse> patchEdges(const PolyMesh& mesh, const Patch& patch) {
+    RawVector<EdgeUse> uses(mesh.faceOffsets[Index(patch.start + patch.count)] -
+                            mesh.faceOffsets[Index(patch.start)]);
     parallelFor(
         Index(patch.count),
         [&](Index i) {
@@ -48,7 +48,7 @@ std::vector<std::int32_t> patchPoints(const PolyMesh& mesh, const Patch& patch) 
 // On a closed surface, where every edge has two faces: points whose faces do not all hang together through
 // the edges at the point. Each edge links its two faces at both of its ends; the faces at a point make one
 // ring when the links and the faces' corners form a single cycle.
-std::vector<std::int32_t> pinchedPoints(const std::vector<EdgeUse>& uses) {
+std::vector<std::int32_t> pinchedPoints(const RawVector<EdgeUse>& uses) {
     struct Link {
         std::int32_t point, face, other;
     };
@@ -88,7 +88,7 @@ PatchQuality measurePatch(const PolyMesh& mesh, const Patch& patch, std::vector<
     const std::vector<std::int32_t> points = patchPoints(mesh, patch);
     quality.points = static_cast<std::int64_t>(points.size());
     for (const std::int32_t p : points) quality.box.add(mesh.points[Index(p)]);
-    const std::vector<EdgeUse> uses = patchEdges(mesh, patch);
+    const RawVector<EdgeUse> uses = patchEdges(mesh, patch);
     bool open = false, over = false;
     for (Index i = 0, j = 0; i < uses.size(); i = j) {
         while (j < uses.size() && uses[j].sameEdge(uses[i])) ++j;

@@ -19,7 +19,7 @@ struct Near {
 // last test repeats that.
 void markNear(const std::vector<Vec3>& points, double near2, std::vector<std::uint8_t>& marks) {
     const Vec3 direction = normalized({0.5377, 0.6180339887, 0.5731});
-    std::vector<Near> list(points.size());
+    RawVector<Near> list(points.size());
     parallelFor(
         points.size(),
         [&](Index i) {

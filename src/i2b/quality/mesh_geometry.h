@@ -8,10 +8,10 @@ namespace i2b {
 constexpr Vec3 divided(const Vec3& a, double s) { return {a.x / s, a.y / s, a.z / s}; }
 
 struct MeshGeometry {
-    std::vector<Vec3> faceCentre;   // m
-    std::vector<Vec3> faceArea;     // m^2, along the normal
-    std::vector<Vec3> cellCentre;   // m
-    std::vector<double> cellVolume; // m^3
+    RawVector<Vec3> faceCentre;   // m
+    RawVector<Vec3> faceArea;     // m^2, along the normal
+    RawVector<Vec3> cellCentre;   // m
+    RawVector<double> cellVolume; // m^3
 };
 
 struct FaceShape {

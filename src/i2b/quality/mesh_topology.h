@@ -2,6 +2,7 @@
 // count, scan, fill; the order of a row follows from the mesh alone.
 #pragma once
 #include "i2b/assemble/poly_mesh.h"
+#include "i2b/quality/raw_vector.h"
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,7 +12,7 @@ namespace i2b {
 // Row i is items[offsets[i] .. offsets[i+1]).
 struct Rows {
     std::vector<std::uint32_t> offsets; // rows + 1
-    std::vector<std::int32_t> items;
+    RawVector<std::int32_t> items;
 
     std::span<const std::int32_t> operator[](std::int32_t row) const {
         const auto r = static_cast<std::size_t>(row);
