@@ -300,11 +300,13 @@ void placePoints(const AssembleInput& in, std::vector<Vec3>& points) {
     parallelFor(in.front.movedPoints.size(), [&](std::size_t i) {
         points[static_cast<std::size_t>(in.front.movedPoints[i])] = in.front.movedTo[i];
     });
+    for (std::size_t v = 0; v < in.front.front.size(); ++v) { // serial: fans may share a point, and then agree on it
+        points[static_cast<std::size_t>(in.front.corePoint[v])] = in.front.front[v];
+    }
     parallelFor(in.front.front.size(), [&](std::size_t v) {
         const Vec3 f = in.front.front[v];
         const auto& p = in.front.mesh.point(FrontMesh::VertexHandle(static_cast<int>(v)));
         const Vec3 b{p[0], p[1], p[2]};
-        points[static_cast<std::size_t>(in.front.corePoint[v])] = f; // fans that share it agree on its place
         for (std::size_t k = 0; k < n; ++k) {
             const double t = k + 1 == n ? 1.0 : static_cast<double>(in.layers.fraction(v, static_cast<int>(k)));
             points[core + v * n + k] = t == 1.0 ? b : f + (b - f) * t;

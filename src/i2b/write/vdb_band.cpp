@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <openvdb/tools/Morphology.h>
 #include <memory>
 #include <unordered_map>
 
