@@ -1,4 +1,18 @@
-// How well the wall of a mesh follows the geometry (definitions: DESIGN.md section 5).
+// How well the wall of a mesh follows the geometry.
+//
+// h, the local wall cell size: of a wall node the median size of the wall faces around it, a face's size
+// being the median length of its edges; of a wall face the median of its nodes'. (Of two in the middle the
+// smaller. Nothing of a lattice is used, so the same measure judges any mesh.)
+//
+// On the geometry: within 0.01 h of it.
+//
+// Captured: samples are taken every h/4 along the geometry's edges of 40 degrees and more, where the wall
+// comes within h/2 and where the edge is resolvable: every such edge stays within 0.1 h of the sample's own
+// straight line as far as h from the sample. The share that has a wall edge, folded by more than 25 degrees,
+// within 0.1 h.
+//
+// Tilted: of the wall faces whose centre is more than h from every edge of 40 degrees and more, the share
+// whose normal is over 25 (45) degrees off that of the geometry closest to the centre, orientation ignored.
 #pragma once
 #include "i2b/assemble/poly_mesh.h"
 #include "i2b/geometry/features.h"
@@ -10,17 +24,19 @@ namespace i2b {
 
 struct FitReport {
     std::int64_t wallNodes = 0, wallFaces = 0;
-    double wallNodesOnGeometryFraction = 1;      // within 0.01 h, h the local wall cell size
+    double wallNodesOnGeometryFraction = 1;                  // within 0.01 h, h the local wall cell size
     double wallNodesWithin0001h = 1, wallNodesWithin01h = 1; // within 0.001 h and 0.1 h
     double meanDistanceInH = 0, maxDistanceInH = 0;          // of wall face centres; of wall nodes
-    double featureCaptureFraction = 1;           // of resolvable samples every h/4 along sharp edges
+    double featureCaptureFraction = 1; // of resolvable samples every h/4 along sharp edges
     std::int64_t featureSamples = 0;
-    double tiltedFaceFraction = 0;               // normal over 25 degrees off, more than h from sharp edges
+    double tiltedFaceFraction = 0; // normal over 25 degrees off, more than h from sharp edges
     double tilted45FaceFraction = 0;
-    Vec3 farthest;                               // m, the wall node farthest from the geometry
+    Vec3 farthest; // m, the wall node of maxDistanceInH
 };
 
-// Of the mesh's wall patches: those named, or all patches of type wall.
+// Of the mesh's wall patches: those named, or all patches of type wall. features must have been built with an
+// angle of at most 40 degrees for the last figures to mean what is said above; all is the same on any number
+// of threads.
 FitReport measureFit(const PolyMesh& mesh, const SurfaceIndex& index, const FeatureGraph& features,
                      const std::vector<std::string>& patches = {});
 

@@ -1,0 +1,213 @@
+// measureFit on walls whose every figure can be worked out by hand: a unit cube with n x n faces a side.
+#include "i2b/quality/fit_report.h"
+#include <functional>
+#include <gtest/gtest.h>
+#include <map>
+#include <tbb/global_control.h>
+
+namespace i2b {
+namespace {
+
+constexpr int n = 10;
+constexpr double h = 1.0 / n;
+
+// Corner (0, 0, 0) and (1, 1, size): 12 triangles, every third turned around.
+Surface box(double height) {
+    Surface s;
+    s.parts.push_back({"box", "", 12});
+    for (int i = 0; i < 8; ++i)
+        s.points.push_back({double(i & 1), double(i >> 1 & 1), height * (i >> 2 & 1)});
+    const std::uint32_t f[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                   {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    for (const auto& q : f) {
+        s.triangles.push_back({q[0], q[1], q[2]});
+        s.triangles.push_back({q[0], q[2], q[3]});
+    }
+    for (std::size_t t = 0; t < 12; t += 3) std::swap(s.triangles[t][0], s.triangles[t][1]);
+    s.partOf.assign(12, 0);
+    return s;
+}
+
+// The boundary faces of a cube cut into n^3; move() places the points of that grid. z = 1 is a patch of its
+// own.
+PolyMesh cubeWall(const std::function<Vec3(Vec3)>& move) {
+    PolyMesh m;
+    m.cells = 1;
+    m.faceOffsets.push_back(0);
+    std::map<std::array<int, 3>, std::int32_t> numbers;
+    const auto point = [&](const std::array<int, 3>& p) {
+        const auto [at, isNew] = numbers.try_emplace(p, static_cast<std::int32_t>(m.points.size()));
+        if (isNew) m.points.push_back(move({p[0] * h, p[1] * h, p[2] * h}));
+        return at->second;
+    };
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (int side = 0; side < 2; ++side)
+            for (int j = 0; j < n; ++j)
+                for (int i = 0; i < n; ++i)
+                    for (int k = 0; k < 4; ++k) {
+                        std::array<int, 3> p{};
+                        p[axis] = side * n;
+                        const int du = k == 1 || k == 2, dv = k >= 2; // a loop, reversed on the low side
+                        p[(axis + 1) % 3] = i + (side ? du : dv);
+                        p[(axis + 2) % 3] = j + (side ? dv : du);
+                        m.faceVertices.push_back(point(p));
+                        if (k == 3) {
+                            m.faceOffsets.push_back(static_cast<std::uint32_t>(m.faceVertices.size()));
+                            m.owner.push_back(0);
+                        }
+                    }
+    m.patches = {{"body", "wall", 0, 5 * n * n}, {"top", "patch", 5 * n * n, n * n}};
+    return m;
+}
+
+FitReport fit(const PolyMesh& mesh, const Surface& surface,
+              const std::vector<std::string>& patches = {"body", "top"}) {
+    return measureFit(mesh, SurfaceIndex(surface), buildFeatureGraph(surface, {}), patches);
+}
+
+// A wall exactly on the geometry gets full marks, and the samples are those of the definition: every h/4 of
+// 12 edges, without the h at either end, where the edges that meet in the corner are too near.
+TEST(FitMeasure, exact) {
+    const FitReport r = fit(cubeWall([](Vec3 p) { return p; }), box(1));
+    EXPECT_EQ(r.wallFaces, 6 * n * n);
+    EXPECT_EQ(r.wallNodes, 6 * n * n + 2);
+    EXPECT_EQ(r.wallNodesWithin0001h, 1);
+    EXPECT_EQ(r.wallNodesOnGeometryFraction, 1);
+    EXPECT_EQ(r.wallNodesWithin01h, 1);
+    EXPECT_NEAR(r.meanDistanceInH, 0, 1e-12);
+    EXPECT_NEAR(r.maxDistanceInH, 0, 1e-12);
+    EXPECT_EQ(r.featureCaptureFraction, 1);
+    EXPECT_NEAR(double(r.featureSamples), 12 * (4 * n - 8), 24);
+    EXPECT_EQ(r.tiltedFaceFraction, 0);
+}
+
+// Shifted by 0.05 h along x: the nodes of the side x = 1 are off by that, and those of x = 0 but for its rim,
+// which slides along the other sides. The edges are still within 0.1 h.
+TEST(FitMeasure, shiftedALittle) {
+    const FitReport r = fit(cubeWall([](Vec3 p) { return p + Vec3{0.05 * h, 0, 0}; }), box(1));
+    const double off = (n + 1) * (n + 1) + (n - 1) * (n - 1);
+    EXPECT_NEAR(r.wallNodesOnGeometryFraction, 1 - off / (6 * n * n + 2), 1e-12);
+    EXPECT_EQ(r.wallNodesWithin0001h, r.wallNodesOnGeometryFraction);
+    EXPECT_EQ(r.wallNodesWithin01h, 1);
+    EXPECT_NEAR(r.maxDistanceInH, 0.05, 1e-9);
+    EXPECT_NEAR(r.meanDistanceInH, 0.05 / 3, 1e-9);
+    const Surface surface = box(1);
+    EXPECT_NEAR(SurfaceIndex(surface).closest(r.farthest).distance, 0.05 * h, 1e-12);
+    EXPECT_EQ(r.featureCaptureFraction, 1);
+    EXPECT_EQ(r.tiltedFaceFraction, 0);
+}
+
+// Shifted by 0.2 h along x: only the four edges along x are still captured.
+TEST(FitMeasure, shiftedFarther) {
+    const FitReport r = fit(cubeWall([](Vec3 p) { return p + Vec3{0.2 * h, 0, 0}; }), box(1));
+    EXPECT_NEAR(r.featureCaptureFraction, 4.0 / 12, 0.02);
+    EXPECT_NEAR(r.maxDistanceInH, 0.2, 1e-9);
+    EXPECT_LT(r.wallNodesWithin01h, 1);
+}
+
+// Edges cut off: the wall comes near them (within h/2) but has no edge there. Its faces next to them are
+// steep, but too near to count as tilted.
+TEST(FitMeasure, chamfered) {
+    const auto inwards = [](double x) { return x < h / 2 ? 0.2 * h : x > 1 - h / 2 ? -0.2 * h : 0; };
+    const FitReport r = fit(cubeWall([&](Vec3 p) {
+                                const Vec3 d{inwards(p.x), inwards(p.y), inwards(p.z)};
+                                const int sides = (d.x != 0) + (d.y != 0) + (d.z != 0);
+                                return sides > 1 ? p + d : p;
+                            }),
+                            box(1));
+    EXPECT_GT(r.featureSamples, 300);
+    EXPECT_EQ(r.featureCaptureFraction, 0);
+    EXPECT_EQ(r.tiltedFaceFraction, 0);
+}
+
+// One node pulled 0.8 h out of the middle of a side tilts its four faces by 29 degrees, 2 h tilt them by 55;
+// the faces along the edges, whose centre is within h, are not counted.
+TEST(FitMeasure, tilted) {
+    const auto pulled = [](double by) {
+        return cubeWall([by](Vec3 p) {
+            const bool one = std::abs(p.x - 0.5) + std::abs(p.y - 0.5) < h / 2 && p.z < h / 2;
+            return one ? p - Vec3{0, 0, by * h} : p;
+        });
+    };
+    const double counted = 6 * (n - 2) * (n - 2);
+    FitReport r = fit(pulled(0.8), box(1));
+    EXPECT_NEAR(r.tiltedFaceFraction, 4 / counted, 1e-12);
+    EXPECT_EQ(r.tilted45FaceFraction, 0);
+    EXPECT_NEAR(r.maxDistanceInH, 0.8, 1e-9);
+    r = fit(pulled(0.6), box(1));
+    EXPECT_EQ(r.tiltedFaceFraction, 0);
+    r = fit(pulled(2), box(1));
+    EXPECT_NEAR(r.tilted45FaceFraction, 4 / counted, 1e-12);
+}
+
+// The rim of a plate thinner than a cell cannot be resolved: it is not asked for. Nor are edges that no wall
+// reaches.
+TEST(FitMeasure, onlyResolvableEdgesAreAskedFor) {
+    const PolyMesh flat = cubeWall([](Vec3 p) { return Vec3{p.x, p.y, p.z * 0.3 * h}; });
+    EXPECT_GT(fit(cubeWall([](Vec3 p) { return p; }), box(1), {"top"}).featureSamples, 100);
+    EXPECT_EQ(fit(flat, box(0.3 * h), {"top"}).featureSamples, 0);
+    const PolyMesh away = cubeWall([](Vec3 p) { return Vec3{0.2, 0.2, 0.2} + p * 0.6; });
+    const FitReport r = fit(away, box(1));
+    EXPECT_EQ(r.featureSamples, 0);
+    EXPECT_EQ(r.featureCaptureFraction, 1);
+}
+
+// Without names the patches of type wall are measured; without any there is nothing to report.
+TEST(FitMeasure, patches) {
+    const PolyMesh mesh = cubeWall([](Vec3 p) { return p; });
+    const Surface surface = box(1);
+    EXPECT_EQ(fit(mesh, surface, {}).wallFaces, 5 * n * n);
+    EXPECT_EQ(fit(mesh, surface, {"top"}).wallFaces, n * n);
+    EXPECT_EQ(fit(mesh, surface, {"nothing"}).wallFaces, 0);
+    EXPECT_EQ(fit(mesh, Surface{}).wallNodesOnGeometryFraction, 1);
+}
+
+// A line of many short edges is sampled like one long edge: by length, not by edge.
+TEST(FitMeasure, samplesByLength) {
+    Surface s = box(1);
+    const auto whole = fit(cubeWall([](Vec3 p) { return p; }), s).featureSamples;
+    // The two triangles at the edge y = z = 0 become fans of 200 triangles.
+    const Vec3 a{0, 0, 0}, b{1, 0, 0};
+    Surface fine;
+    fine.parts = s.parts;
+    const auto add = [&](const Vec3& p, const Vec3& q, const Vec3& r) {
+        const auto k = static_cast<std::uint32_t>(fine.points.size());
+        fine.points.insert(fine.points.end(), {p, q, r});
+        fine.triangles.push_back({k, k + 1, k + 2});
+        fine.partOf.push_back(0);
+    };
+    for (const auto& t : s.triangles) {
+        const Vec3 v[3] = {s.points[t[0]], s.points[t[1]], s.points[t[2]]};
+        int onEdge = 0;
+        Vec3 apex;
+        for (const Vec3& p : v) p == a || p == b ? void(++onEdge) : void(apex = p);
+        if (onEdge < 2)
+            add(v[0], v[1], v[2]);
+        else
+            for (int i = 0; i < 200; ++i) add({i / 200.0, 0, 0}, {(i + 1) / 200.0, 0, 0}, apex);
+    }
+    EXPECT_NEAR(double(fit(cubeWall([](Vec3 p) { return p; }), fine).featureSamples), double(whole), 3);
+}
+
+// The same report to the last bit on any number of threads.
+TEST(FitMeasure, threads) {
+    const PolyMesh mesh = cubeWall([](Vec3 p) {
+        return p + Vec3{std::sin(9 * p.y), std::sin(8 * p.z), std::cos(7 * p.x)} * 0.02;
+    });
+    const Surface surface = box(1);
+    const FitReport a = fit(mesh, surface);
+    EXPECT_GT(a.meanDistanceInH, 0.01);
+    for (const std::size_t threads : {1u, 3u, 8u}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        const FitReport b = fit(mesh, surface);
+        EXPECT_EQ(a.meanDistanceInH, b.meanDistanceInH);
+        EXPECT_EQ(a.maxDistanceInH, b.maxDistanceInH);
+        EXPECT_EQ(a.featureCaptureFraction, b.featureCaptureFraction);
+        EXPECT_EQ(a.featureSamples, b.featureSamples);
+        EXPECT_EQ(a.tiltedFaceFraction, b.tiltedFaceFraction);
+        EXPECT_EQ(a.farthest, b.farthest);
+    }
+}
+
+} // namespace
+} // namespace i2b
