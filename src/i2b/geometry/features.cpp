@@ -55,7 +55,8 @@ struct PointGrid {
 // The lowest-numbered point within the tolerance of each used point (itself, if none is lower).
 std::vector<std::uint32_t> weldTargets(const Surface& s, const std::vector<std::uint32_t>& used,
                                        double tolerance, const Box& bounds) {
-    const PointGrid grid{bounds.lo, std::max(4 * tolerance, 1e-300)};
+    // Never so small that a cell's number overflows.
+    const PointGrid grid{bounds.lo, std::max({4 * tolerance, 1e-15 * norm(bounds.extent()), 1e-300})};
     std::vector<HashedPoint> sorted(used.size());
     parallelFor(used.size(), [&](std::size_t i) {
         sorted[i] = {grid.at(s.points[used[i]]).hash(), used[i]};
