@@ -190,28 +190,46 @@ class OddPoints {
         return was;
     }
 
-    bool maybeOdd(std::int32_t p) const {
-        Bits edges{}, diagonals{};
-        bool odd = false;
-        for (const std::int32_t f : pointFaces_[p]) {
+    // The higher points that p is joined to by edges and by diagonals of its faces. Which are higher is as
+    // good as random, so lists grow without a branch. false: not simple, look closely.
+    bool collect(std::int32_t p) {
+        const std::span<const std::int32_t> faces = pointFaces_[p];
+        Index corners = 0;
+        for (const std::int32_t f : faces) corners += mesh_.face(f).size();
+        if (edges_.size() < corners) edges_.resize(corners), diagonals_.resize(corners);
+        edgeCount_ = diagonalCount_ = 0;
+        const auto add = [p](std::vector<std::int32_t>& list, Index& count, std::int32_t to) {
+            list[count] = to;
+            count += to > p ? 1 : 0;
+        };
+        for (const std::int32_t f : faces) {
             const Face v = mesh_.face(f);
-            if (v.size() == 3) return true;
+            if (v.size() == 3) return false;
+            if (v.size() == 4) {
+                const Index at = Index(v[1] == p) + 2 * Index(v[2] == p) + 3 * Index(v[3] == p);
+                add(edges_, edgeCount_, v[(at + 1) % 4]);
+                add(diagonals_, diagonalCount_, v[(at + 2) % 4]);
+                add(edges_, edgeCount_, v[(at + 3) % 4]);
+                continue;
+            }
             const auto at = static_cast<Index>(std::find(v.begin(), v.end(), p) - v.begin());
             const Index after = wrapped(at, 1, v.size()), before = wrapped(at, -1, v.size());
-            for (Index i = 0; i < v.size(); ++i) {
-                if (v[i] <= p) {
-                    odd = odd || (v[i] == p && i != at);
-                    continue;
-                }
+            for (Index i = 0; i < v.size(); ++i)
                 if (i == after || i == before)
-                    set(edges, v[i]);
+                    add(edges_, edgeCount_, v[i]);
                 else
-                    odd = set(diagonals, v[i]) || odd;
-            }
+                    add(diagonals_, diagonalCount_, v[i]);
         }
-        std::uint64_t both = 0;
-        for (Index w = 0; w < words; ++w) both |= edges[w] & diagonals[w];
-        return odd || both != 0;
+        return true;
+    }
+
+    bool maybeOdd(std::int32_t p) {
+        if (!collect(p)) return true;
+        Bits taken{};
+        for (Index i = 0; i < edgeCount_; ++i) set(taken, edges_[i]);
+        bool odd = false;
+        for (Index i = 0; i < diagonalCount_; ++i) odd |= set(taken, diagonals_[i]);
+        return odd;
     }
 
     void addSpokes(std::int32_t p, std::int32_t f) {
@@ -227,6 +245,8 @@ class OddPoints {
     const PolyMesh& mesh_;
     const Rows& pointFaces_;
     std::vector<Spoke> spokes_;
+    std::vector<std::int32_t> edges_, diagonals_;
+    Index edgeCount_ = 0, diagonalCount_ = 0;
 };
 
 std::vector<std::uint8_t> suspectFaces(const Measurement& m, const Rows& pointFaces) {
