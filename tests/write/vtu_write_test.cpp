@@ -99,7 +99,7 @@ PolyMesh splitEveryThirdFace(const PolyMesh& mesh) {
 // VTK wants them.
 TEST(VtuCells, RecognisesShapes) {
     const PolyMesh mesh = test::zooMesh();
-    const CellFaces faces = buildCellFaces(mesh);
+    const CellFaces faces = cellFacesOf(mesh);
     const auto shape = [&](std::int32_t c) { return shapeOf(mesh, faces.of(c), c); };
     EXPECT_EQ(shape(0).type, VtkCell::hexahedron);
     EXPECT_EQ(shape(1).type, VtkCell::wedge);

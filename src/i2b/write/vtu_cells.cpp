@@ -108,7 +108,7 @@ CellShape cone(const PolyMesh& mesh, Span cellFaces, std::int32_t cell, std::int
 
 } // namespace
 
-CellFaces buildCellFaces(const PolyMesh& mesh) {
+CellFaces cellFacesOf(const PolyMesh& mesh) {
     const auto cells = static_cast<std::size_t>(mesh.cells);
     CellFaces result;
     result.offsets.assign(cells + 1, 0);

@@ -29,7 +29,7 @@ struct CellFaces {
                 faces.data() + offsets[static_cast<std::size_t>(cell) + 1]};
     }
 };
-CellFaces buildCellFaces(const PolyMesh& mesh);
+CellFaces cellFacesOf(const PolyMesh& mesh);
 
 // The type of a cell and, unless it is a polyhedron, its points in VTK's order.
 struct CellShape {

@@ -85,7 +85,7 @@ void inclusiveScan(std::vector<std::int64_t>& counts) {
 
 CellTable buildCellTable(const PolyMesh& mesh) {
     CellTable table;
-    table.faces = buildCellFaces(mesh);
+    table.faces = cellFacesOf(mesh);
     const auto n = static_cast<std::size_t>(mesh.cells);
     table.types.resize(n);
     table.pointsEnd.resize(n);
