@@ -53,8 +53,13 @@ class FoamRead : public testing::Test {
     }
     void expectCube() const {
         const PolyMesh mesh = readFoam(folder_.string());
-        EXPECT_EQ(mesh.validate(), "");
         EXPECT_EQ(mesh.cells, 1);
+        EXPECT_EQ(mesh.points.size(), 8U);
+        EXPECT_THAT(mesh.faceOffsets, ElementsAre(0, 4, 8, 12, 16, 20, 24));
+        EXPECT_THAT(mesh.faceVertices,
+                    ElementsAre(0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7));
+        EXPECT_THAT(mesh.owner, ElementsAre(0, 0, 0, 0, 0, 0));
+        EXPECT_TRUE(mesh.neighbour.empty());
         EXPECT_EQ(mesh.points.at(6), (Vec3{1, 1, 1}));
         EXPECT_THAT(mesh.face(3), ElementsAre(1, 2, 6, 5));
         EXPECT_EQ(mesh.patches.at(0).type, "wall");
@@ -76,8 +81,8 @@ class FoamRead : public testing::Test {
 // Text with everything on one line, comments, uniform and empty lists; named by case or by polyMesh folder.
 TEST_F(FoamRead, Text) {
     expectCube();
-    EXPECT_EQ(readFoam((folder_ / "constant/polyMesh").string()).checksum(),
-              readFoam(folder_.string()).checksum());
+    const PolyMesh direct = readFoam((folder_ / "constant/polyMesh").string());
+    EXPECT_EQ(direct.points, readFoam(folder_.string()).points);
 }
 
 // Binary with the sizes of labels and scalars that the header names, faces in both forms.
