@@ -281,7 +281,7 @@ PolyMesh Assembler::run() {
     layOut(mesh);
     fill(mesh);
     wallPatches(mesh);
-    placePoints(in_, mesh.points);
+    placePoints(in_.lattice, in_.front, in_.layers, mesh.points);
     cellData(mesh);
     return mesh;
 }
@@ -290,25 +290,25 @@ PolyMesh Assembler::run() {
 
 PolyMesh assemble(const AssembleInput& input) { return Assembler(input).run(); }
 
-void placePoints(const AssembleInput& in, std::vector<Vec3>& points) {
+void placePoints(const LatticeMesh& lattice, const Front& front, const LayerStack& layers, std::vector<Vec3>& points) {
     if (points.empty()) {
-        points = in.lattice.latticePoints();
+        points = lattice.latticePoints();
     }
-    const auto core = static_cast<std::size_t>(in.lattice.pointCount());
-    const auto n = static_cast<std::size_t>(in.layers.count);
-    points.resize(core + in.front.front.size() * n);
-    parallelFor(in.front.movedPoints.size(), [&](std::size_t i) {
-        points[static_cast<std::size_t>(in.front.movedPoints[i])] = in.front.movedTo[i];
+    const auto core = static_cast<std::size_t>(lattice.pointCount());
+    const auto n = static_cast<std::size_t>(layers.count);
+    points.resize(core + front.front.size() * n);
+    parallelFor(front.movedPoints.size(), [&](std::size_t i) {
+        points[static_cast<std::size_t>(front.movedPoints[i])] = front.movedTo[i];
     });
-    for (std::size_t v = 0; v < in.front.front.size(); ++v) { // serial: fans may share a point, and then agree on it
-        points[static_cast<std::size_t>(in.front.corePoint[v])] = in.front.front[v];
+    for (std::size_t v = 0; v < front.front.size(); ++v) { // serial: fans may share a point, and then agree on it
+        points[static_cast<std::size_t>(front.corePoint[v])] = front.front[v];
     }
-    parallelFor(in.front.front.size(), [&](std::size_t v) {
-        const Vec3 f = in.front.front[v];
-        const auto& p = in.front.mesh.point(FrontMesh::VertexHandle(static_cast<int>(v)));
+    parallelFor(front.front.size(), [&](std::size_t v) {
+        const Vec3 f = front.front[v];
+        const auto& p = front.mesh.point(FrontMesh::VertexHandle(static_cast<int>(v)));
         const Vec3 b{p[0], p[1], p[2]};
         for (std::size_t k = 0; k < n; ++k) {
-            const double t = k + 1 == n ? 1.0 : static_cast<double>(in.layers.fraction(v, static_cast<int>(k)));
+            const double t = k + 1 == n ? 1.0 : static_cast<double>(layers.fraction(v, static_cast<int>(k)));
             points[core + v * n + k] = t == 1.0 ? b : f + (b - f) * t;
         }
     });

@@ -18,7 +18,8 @@ struct AssembleInput {
 // Throws Error(input) where the mesh has more than 2^31 labels.
 PolyMesh assemble(const AssembleInput& input);
 
-// Points only, in the same numbering: for moves of the front after assembly.
-void placePoints(const AssembleInput& input, std::vector<Vec3>& points);
+// Points only, in the same numbering: for moves of the front after assembly. Fills an empty vector; else writes the
+// points that the front has, and leaves the others where they are.
+void placePoints(const LatticeMesh& lattice, const Front& front, const LayerStack& layers, std::vector<Vec3>& points);
 
 } // namespace i2b

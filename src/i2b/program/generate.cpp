@@ -11,6 +11,7 @@
 #include "i2b/grid/mask_ops.h"
 #include "i2b/layers/layer_stack.h"
 #include "i2b/paint/paint.h"
+#include "i2b/quality/repair.h"
 #include <fmt/format.h>
 
 namespace i2b {
@@ -111,6 +112,11 @@ MeshResult generate(const Options& options, Context& context) {
     const AssembleInput input{*lattice, c.kept, front, layers, c.surface.parts};
     out.mesh = stage(
         context, "assemble", [&] { return assemble(input); }, [](const PolyMesh& m) { return m.cells; });
+    const RepairSummary repaired = stage(context, "repair", [&] { return repair(out.mesh, front, *lattice, layers, startThickness); },
+                                         [](const RepairSummary& r) { return r.retracted; });
+    if (repaired.remaining > 0) {
+        throw Error(ErrorKind::internal, fmt::format("{} cells could not be made valid", repaired.remaining), "", "please report the case");
+    }
     out.report = reportOf(c, options, context);
     out.report.quality = stage(
         context, "quality", [&] { return measureQuality(out.mesh); },

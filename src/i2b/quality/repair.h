@@ -1,0 +1,21 @@
+// The last guard of validity. The fit judges cells by their corners, which is nearly, not quite, OpenFOAM's measure:
+// where a cell of the assembled mesh has no positive volume or a face pyramid of it points the wrong way, the points
+// around it step back towards the start of the fit, where every cell is right by construction, and so on until none
+// is left. The slope of the retreat is bounded, so that it ends smoothly.
+#pragma once
+#include "i2b/assemble/assemble.h"
+#include <cstdint>
+
+namespace i2b {
+
+struct RepairSummary {
+    int rounds = 0;
+    std::int64_t badCells = 0;   // at the beginning
+    std::int64_t retracted = 0;  // points that stepped back
+    std::int64_t remaining = 0;  // bad cells at the end; 0 unless the start itself is wrong
+};
+
+// startThickness: what buildFront() was given. Moves points of mesh, and front positions alike.
+RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, const LayerStack& layers, double startThickness);
+
+} // namespace i2b
