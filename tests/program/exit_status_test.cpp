@@ -29,7 +29,7 @@ class ExitStatus : public ::testing::Test {
 
     Outcome run(const std::string& arguments) const {
         const std::string command =
-            "cd '" + folder_.string() + "' && '" I2B_PROGRAM "' " + arguments + " 2>&1";
+            "cd '" + folder_.string() + "' && { '" I2B_PROGRAM "' " + arguments + "; } 2>&1";
         std::FILE* const pipe = popen(command.c_str(), "r");
         Outcome outcome;
         std::array<char, 4096> buffer{};
@@ -94,6 +94,41 @@ TEST_F(ExitStatus, WrittenCaseIsRead) {
         second{std::istreambuf_iterator<char>(b), {}};
     EXPECT_THAT(first, HasSubstr("size = 0.25"));
     EXPECT_EQ(first, second);
+}
+
+// 0: a mesh was written, in all formats, and what was written reads back as the mesh that was reported.
+TEST_F(ExitStatus, MeshSucceeds) {
+    ASSERT_EQ(run("sample sphere -o sphere.stl").status, 0);
+    const Outcome mesh = run("mesh sphere.stl --size 0.2 --box -1 -1 -1 1 1 1 --out case --threads 2");
+    ASSERT_EQ(mesh.status, 0) << mesh.text;
+    EXPECT_THAT(mesh.text, HasSubstr("written to case"));
+    for (const char* file :
+         {"constant/polyMesh/points", "case.foam", "mesh.vtu", "wall.ply", "grid.vdb", "report.json"})
+        EXPECT_TRUE(std::filesystem::exists(folder_ / "case" / file)) << file;
+    EXPECT_THAT(run("check case").text, HasSubstr("Mesh stats"));
+    EXPECT_THAT(run("check case --geometry sphere.stl").text, HasSubstr("Fit to the geometry"));
+}
+
+// Quiet means quiet; regions lists a seed that mesh takes.
+TEST_F(ExitStatus, RegionsAndQuiet) {
+    ASSERT_EQ(run("sample sphere -o sphere.stl --quiet").status, 2); // sample has no such option
+    ASSERT_EQ(run("sample sphere -o sphere.stl").status, 0);
+    const Outcome regions = run("regions sphere.stl --size 0.2 --box -1 -1 -1 1 1 1");
+    ASSERT_EQ(regions.status, 0) << regions.text;
+    EXPECT_THAT(regions.text, HasSubstr("--seed "));
+    const Outcome quiet = run("mesh sphere.stl --size 0.2 --box -1 -1 -1 1 1 1 --quiet --format report");
+    EXPECT_EQ(quiet.status, 0);
+    EXPECT_EQ(quiet.text, "");
+}
+
+// 130: Ctrl-C ends a long run soon, and leaves no trace of it.
+TEST_F(ExitStatus, InterruptLeavesNothing) {
+    ASSERT_EQ(run("sample engine -o engine.stl").status, 0);
+    const Outcome stopped =
+        run("mesh engine.stl --size 0.004 --out case & p=$!; sleep 1; kill -INT $p; wait $p");
+    EXPECT_EQ(stopped.status, 130) << stopped.text;
+    EXPECT_THAT(stopped.text, HasSubstr("interrupted"));
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
 }
 
 } // namespace
