@@ -2,6 +2,7 @@
 #include "i2b/fit/corner.h"
 #include "i2b/fit/fit.h"
 #include <algorithm>
+#include <atomic>
 
 namespace i2b {
 namespace {
@@ -11,12 +12,18 @@ constexpr double stepBack = 0.35;   // of the way
 constexpr double slope = 0.34;      // largest difference of alpha between neighbours: keeps the rim of a patch valid
 constexpr int gentleRounds = 30;    // after these only inverted corners count, and then their nodes go back whole
 
-// Nodes of bad corners step back by `step`. Gives how many nodes changed.
-std::size_t stepBackBad(const Band& band, const std::vector<Vec3>& x, double limit, double step, std::vector<double>& alpha) {
-    std::vector<std::uint8_t> bad(band.movable, 0);
-    parallelFor(band.movable, [&](std::size_t n) {
-        for (std::int32_t c : band.cornersOf[n]) {
-            if (cornerEnergy(band.corners[static_cast<std::size_t>(c)], x) > limit) bad[n] = 1;
+// Nodes of bad corners step back by `step`. Only corners with a node that has moved since the last round are judged
+// again. Gives how many nodes changed.
+std::size_t stepBackBad(const Band& band, const std::vector<Vec3>& x, double limit, double step, const std::vector<std::uint8_t>& moved,
+                        std::vector<double>& alpha) {
+    std::vector<std::uint8_t> bad(band.nodes(), 0);
+    parallelFor(band.corners.size(), [&](std::size_t c) {
+        const Corner& corner = band.corners[c];
+        bool look = false;
+        for (std::int32_t n : corner.node) look = look || moved[static_cast<std::size_t>(n)];
+        if (!look || !(cornerEnergy(corner, x) > limit)) return;
+        for (std::int32_t n : corner.node) { // all that set it set the same
+            std::atomic_ref<std::uint8_t>(bad[static_cast<std::size_t>(n)]).store(1, std::memory_order_relaxed);
         }
     });
     std::size_t changed = 0;
@@ -48,8 +55,13 @@ void spread(const Band& band, std::vector<double>& alpha) {
     }
 }
 
-void place(const Band& band, const std::vector<Vec3>& goal, const std::vector<double>& alpha, std::vector<Vec3>& x) {
-    parallelFor(band.movable, [&](std::size_t n) { x[n] = band.start[n] + (goal[n] - band.start[n]) * alpha[n]; });
+void place(const Band& band, const std::vector<Vec3>& goal, const std::vector<double>& alpha, std::vector<Vec3>& x,
+           std::vector<std::uint8_t>& moved) {
+    parallelFor(band.movable, [&](std::size_t n) {
+        const Vec3 to = band.start[n] + (goal[n] - band.start[n]) * alpha[n];
+        moved[n] = !(to == x[n]);
+        x[n] = to;
+    });
 }
 
 } // namespace
@@ -72,17 +84,20 @@ double scaledJacobian(const Corner& c, const std::vector<Vec3>& x) {
 std::vector<double> blend(const Band& band, const std::vector<Vec3>& goal, std::vector<Vec3>& x) {
     std::vector<double> alpha(band.movable, 1);
     x = band.start;
-    place(band, goal, alpha, x);
+    std::vector<std::uint8_t> moved(band.nodes(), 0);
+    place(band, goal, alpha, x, moved);
     for (int round = 0;; ++round) {
         const bool gentle = round < gentleRounds;
+        if (round == gentleRounds) std::fill(moved.begin(), moved.end(), std::uint8_t(1)); // judged by another limit now
         const double limit = gentle ? badEnergy : std::numeric_limits<double>::max();
-        if (stepBackBad(band, x, limit, gentle ? stepBack : 1.0, alpha) == 0) {
-            if (!gentle) break;
+        const bool changed = stepBackBad(band, x, limit, gentle ? stepBack : 1.0, moved, alpha) > 0;
+        if (!changed && !gentle) break;
+        if (!changed) {
             round = gentleRounds - 1;
             continue;
         }
         if (gentle) spread(band, alpha);
-        place(band, goal, alpha, x);
+        place(band, goal, alpha, x, moved);
     }
     return alpha;
 }

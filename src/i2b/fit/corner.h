@@ -1,6 +1,7 @@
 // Arithmetic of corner tetrahedra, shared by the steps of the fit.
 #pragma once
 #include "i2b/fit/band.h"
+#include <bit>
 
 namespace i2b {
 
@@ -9,9 +10,20 @@ inline double determinantOf(const Corner& c, const Vec3& x0, const Vec3& x1, con
     return dot(cross(x1 - x0, x2 - x0), x3 - x0) * scale;
 }
 
+// Cube root of a positive number to about 1e-14: a third of the exponent, then two Halley steps. Several times as fast
+// as the library's, and the same on every IEEE machine.
+inline double cubeRoot(double x) {
+    double y = std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) / 3 + 0x2a9f7893782da1ceull);
+    for (int i = 0; i < 2; ++i) {
+        const double t = y * y * y;
+        y *= (t + 2 * x) / (2 * t + x);
+    }
+    return y;
+}
+
 inline double energyOf(double trace, double det) {
     if (!(det > 0)) return std::numeric_limits<double>::infinity();
-    const double root = std::cbrt(det);
+    const double root = cubeRoot(det);
     return 0.25 * trace / (root * root) + 0.125 * (det + 1 / det);
 }
 

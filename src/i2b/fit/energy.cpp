@@ -67,29 +67,47 @@ double energyAt(const std::vector<LocalCorner>& corners, const WallTerm& wall, c
     return sum + wall.weight * r * r;
 }
 
-void derivativesAt(const std::vector<LocalCorner>& corners, const WallTerm& wall, const Vec3& d, Eigen::Vector3d& gradient,
-                   Eigen::Matrix3d& hessian) {
-    gradient.setZero();
-    hessian.setZero();
-    const auto vec = [](const Vec3& v) { return Eigen::Vector3d(v.x, v.y, v.z); };
+// Gradient and the upper triangle of the Hessian: xx, xy, xz, yy, yz, zz.
+struct Derivatives {
+    Vec3 gradient;
+    std::array<double, 6> hessian{};
+
+    void addOuter(const Vec3& a, double w) {
+        const Vec3 s = a * w;
+        hessian[0] += s.x * a.x, hessian[1] += s.x * a.y, hessian[2] += s.x * a.z;
+        hessian[3] += s.y * a.y, hessian[4] += s.y * a.z, hessian[5] += s.z * a.z;
+    }
+    void addCross(const Vec3& a, const Vec3& b, double w) { // w (a b^T + b a^T)
+        const Vec3 s = a * w, t = b * w;
+        hessian[0] += 2 * s.x * b.x, hessian[1] += s.x * b.y + t.x * a.y, hessian[2] += s.x * b.z + t.x * a.z;
+        hessian[3] += 2 * s.y * b.y, hessian[4] += s.y * b.z + t.y * a.z, hessian[5] += 2 * s.z * b.z;
+    }
+    void addIdentity(double w) { hessian[0] += w, hessian[3] += w, hessian[5] += w; }
+};
+
+// Of sum w phi^3 and the wall term, with phi = T D^(-2/3) / 4 + (D + 1/D) / 8.
+Derivatives derivativesAt(const std::vector<LocalCorner>& corners, const WallTerm& wall, const Vec3& d) {
+    Derivatives sum;
     for (const LocalCorner& c : corners) {
         const double det = c.det0 + dot(c.gradient, d);
         const double trace = c.trace0 + dot(c.linear, d) + c.quadratic * norm2(d);
-        const double root = std::cbrt(det), d23 = 1 / (root * root);
-        const Eigen::Vector3d g = vec(c.gradient), t = vec(c.linear + d * (2 * c.quadratic));
-        const double phi = 0.25 * trace * d23 + 0.125 * (det + 1 / det);
-        const double slope = -(2.0 / 3) * 0.25 * trace * d23 / det + 0.125 * (1 - 1 / (det * det)); // d phi / d det
-        const Eigen::Vector3d dphi = 0.25 * d23 * t + slope * g;
-        Eigen::Matrix3d h = Eigen::Matrix3d::Identity() * (0.5 * c.quadratic * d23);
-        h -= (2.0 / 3) * 0.25 * d23 / det * (t * g.transpose() + g * t.transpose());
-        h += ((10.0 / 9) * 0.25 * trace * d23 / (det * det) + 0.25 / (det * det * det)) * (g * g.transpose());
-        gradient += c.weight * 3 * phi * phi * dphi;
-        hessian += c.weight * (3 * phi * phi * h + 6 * phi * (dphi * dphi.transpose()));
+        const double root = cubeRoot(det), d23 = 0.25 / (root * root), inverse = 1 / det;
+        const Vec3 t = c.linear + d * (2 * c.quadratic);
+        const double phi = trace * d23 + 0.125 * (det + inverse);
+        const double slope = -(2.0 / 3) * trace * d23 * inverse + 0.125 * (1 - inverse * inverse); // d phi / d det
+        const Vec3 dphi = t * d23 + c.gradient * slope;
+        const double w = 3 * c.weight * phi * phi;
+        sum.gradient += dphi * w;
+        sum.addIdentity(w * 2 * c.quadratic * d23);
+        sum.addCross(t, c.gradient, -w * (2.0 / 3) * d23 * inverse);
+        sum.addOuter(c.gradient, w * ((10.0 / 9) * trace * d23 * inverse * inverse + 0.25 * inverse * inverse * inverse));
+        sum.addOuter(dphi, 6 * c.weight * phi);
     }
     const double r = wall.offset + dot(wall.normal, d) * wall.inverseH;
-    const Eigen::Vector3d n = vec(wall.normal) * wall.inverseH;
-    gradient += 2 * wall.weight * r * n;
-    hessian += 2 * wall.weight * (n * n.transpose());
+    const Vec3 n = wall.normal * wall.inverseH;
+    sum.gradient += n * (2 * wall.weight * r);
+    sum.addOuter(n, 2 * wall.weight);
+    return sum;
 }
 
 // The move of one node: a few Newton steps, each capped and halved until the energy falls.
@@ -97,9 +115,10 @@ Vec3 bestMove(const std::vector<LocalCorner>& corners, const WallTerm& wall, std
     Vec3 d;
     double energy = energyAt(corners, wall, d);
     for (int step = 0; step < steps; ++step) {
-        Eigen::Vector3d gradient;
+        const Derivatives at = derivativesAt(corners, wall, d);
+        Eigen::Vector3d gradient(at.gradient.x, at.gradient.y, at.gradient.z);
         Eigen::Matrix3d hessian;
-        derivativesAt(corners, wall, d, gradient, hessian);
+        hessian << at.hessian[0], at.hessian[1], at.hessian[2], at.hessian[1], at.hessian[3], at.hessian[4], at.hessian[2], at.hessian[4], at.hessian[5];
         for (int axis = 0; axis < 3; ++axis) { // nodes in a side of the domain stay there
             if (!(outside >> (2 * axis) & 3)) continue;
             gradient[axis] = 0;
@@ -120,7 +139,7 @@ Vec3 bestMove(const std::vector<LocalCorner>& corners, const WallTerm& wall, std
             d = to, energy = e, moved = true;
             break;
         }
-        if (!moved || s.norm() < 1e-4 * cap) break;
+        if (!moved || s.norm() < 5e-3 * cap) break;
     }
     return d;
 }
