@@ -216,6 +216,25 @@ TEST(MeasureQuality, FaceOrder) {
     EXPECT_TRUE(findCheck(r, "upperTriangularFace")->fails);
 }
 
+// The text: one line per check with figure, limit, number, verdict and place, and the verdict in the last
+// line.
+TEST(MeasureQuality, Text) {
+    QualityLimits limits;
+    limits.determinant = 0; // cells with a single inner face have none
+    const PolyMesh sheared = columnOf({square(0), square(1, {4, 0, 0}), square(2, {8, 0, 0})});
+    const QualityReport r = measureQuality(sheared, limits);
+    const std::string text = formatQuality(r);
+    EXPECT_THAT(text, testing::ContainsRegex(
+                          "non-orthogonality .degrees. +75.9638 +75.9638 +70 +1 faces +warns +.4.5 0.5 1."));
+    EXPECT_THAT(text, testing::ContainsRegex("skewness +[0-9.]+ +4 +[-] +ok\n"));
+    EXPECT_THAT(text, HasSubstr("2 hexahedra"));
+    EXPECT_THAT(text, testing::EndsWith("\nall checks pass\n"));
+    EXPECT_THAT(text, testing::Not(HasSubstr("FAILS")));
+    const std::string failed = formatQuality(measureQuality(columnOf({square(0), square(1)})));
+    EXPECT_THAT(failed, testing::ContainsRegex("determinant +0 +0 +0.001 +1 cells +FAILS +.0.5 0.5 0.5."));
+    EXPECT_THAT(failed, testing::EndsWith("\n1 of 36 checks fail\n"));
+}
+
 // The report, to the last bit of text, does not depend on the number of threads; and the mesh is large enough
 // for several blocks of every loop.
 TEST(MeasureQuality, SameOnAnyNumberOfThreads) {
@@ -234,7 +253,7 @@ TEST(MeasureQuality, SameOnAnyNumberOfThreads) {
         if (first.empty()) first = text;
         EXPECT_EQ(text, first) << threads << " threads";
     }
-    EXPECT_THAT(first, HasSubstr("hexahedra:     59999"));
+    EXPECT_THAT(first, HasSubstr("59999 hexahedra"));
 }
 
 } // namespace

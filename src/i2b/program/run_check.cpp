@@ -1,4 +1,4 @@
-// i2b check: quality of any polyMesh in checkMesh's words, and how well its walls fit a geometry.
+// i2b check: quality of any polyMesh, and how well its walls fit a geometry.
 #include "i2b/geometry/features.h"
 #include "i2b/geometry/read.h"
 #include "i2b/geometry/surface_index.h"

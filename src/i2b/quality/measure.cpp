@@ -15,7 +15,8 @@ Vec3 place(const Measurement& m, Kind kind, std::int32_t id) {
                                  : m.mesh.points[i];
 }
 
-// In checkMesh's order. The open-cell check reports before it looks at aspect ratios, and counts as one.
+// In the order of checkMesh's sets. Openness and aspect ratio are one check: open cells leave no word on
+// ratios.
 void listChecks(Measurement& m) {
     QualityReport& r = m.report;
     QualityTallies& t = m.tallies;

@@ -6,7 +6,7 @@ namespace i2b {
 namespace {
 
 using Index = std::size_t;
-constexpr double rootTiny = 1e-150, tiny = 1e-300, huge = 1e300;
+constexpr double tinyDivisor = 1e-150, tinyLength = 1e-300, beyondAll = 1e300;
 constexpr double planarCosine = 1e-6; // face centres nearer a face's plane than this make a cell concave
 
 struct CellPart {
@@ -159,16 +159,16 @@ void checkClosedness(const Measurement& m, std::span<const std::int32_t> faces, 
             sum -= area;
         sizes += Vec3{std::abs(area.x), std::abs(area.y), std::abs(area.z)};
     }
-    double openness = 0, least = huge, most = -huge;
+    double openness = 0, least = beyondAll, most = -beyondAll;
     for (int k = 0; k < 3; ++k) {
-        openness = std::max(openness, std::abs(sum[k]) / (sizes[k] + rootTiny));
+        openness = std::max(openness, std::abs(sum[k]) / (sizes[k] + tinyDivisor));
         if (!directions.valid[Index(k)]) continue;
         least = std::min(least, sizes[k]);
         most = std::max(most, sizes[k]);
     }
-    double aspect = most / (least + rootTiny);
+    double aspect = most / (least + tinyDivisor);
     if (directions.count == 3) {
-        const double volume = std::max(rootTiny, m.geometry.cellVolume[Index(cell)]);
+        const double volume = std::max(tinyDivisor, m.geometry.cellVolume[Index(cell)]);
         aspect = std::max(aspect, 1.0 / 6.0 * (sizes.x + sizes.y + sizes.z) / std::pow(volume, 2.0 / 3.0));
     }
     part.openness.add(openness);
@@ -186,7 +186,7 @@ double determinant(const Measurement& m, std::span<const std::int32_t> faces, co
     int n = 0;
     for (const std::int32_t f : faces)
         if (f < internal) mean += norm(m.geometry.faceArea[Index(f)]), ++n;
-    if (n == 0 || mean < rootTiny) return 0;
+    if (n == 0 || mean < tinyDivisor) return 0;
     mean /= n;
     double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
     for (const std::int32_t f : faces) {
@@ -205,7 +205,7 @@ double determinant(const Measurement& m, std::span<const std::int32_t> faces, co
 bool isConcave(const Measurement& m, std::span<const std::int32_t> faces, std::int32_t cell) {
     for (const std::int32_t f : faces) {
         const Vec3& area = m.geometry.faceArea[Index(f)];
-        Vec3 normal = divided(area, std::max(norm(area), tiny));
+        Vec3 normal = divided(area, std::max(norm(area), tinyLength));
         if (m.mesh.owner[Index(f)] != cell) normal = normal * -1.0;
         for (const std::int32_t g : faces) {
             if (g == f) continue;
@@ -213,7 +213,7 @@ bool isConcave(const Measurement& m, std::span<const std::int32_t> faces, std::i
             const double along = dot(d, normal), size2 = norm2(d);
             if (along < 0 && along * along > (1.01 * planarCosine * planarCosine) * size2 && size2 > 1e-280)
                 continue;
-            if (dot(divided(d, std::max(std::sqrt(size2), tiny)), normal) > -planarCosine) return true;
+            if (dot(divided(d, std::max(std::sqrt(size2), tinyLength)), normal) > -planarCosine) return true;
         }
     }
     return false;

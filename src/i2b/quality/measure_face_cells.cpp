@@ -5,8 +5,9 @@ namespace i2b {
 namespace {
 
 using Index = std::size_t;
-constexpr double small = 1e-15, rootTiny = 1e-150, tiny = 1e-300, great = 1e15, huge = 1e300;
-constexpr double tetTolerance = small * small;
+constexpr double rounding = 1e-15, tinyDivisor = 1e-150, tinyWeight = 1e-300, largestRadius = 1e15,
+                 beyondAll = 1e300;
+constexpr double tetTolerance = rounding * rounding;
 
 struct FaceCellPart {
     Tally nonOrtho, wrongOriented, skew, lowWeight, lowVolRatio, lowQualityTets;
@@ -26,27 +27,29 @@ struct FaceCellPart {
 // is at least leastExtent.
 double skewness(const PolyMesh& mesh, std::span<const std::int32_t> v, const Vec3& faceCentre,
                 const Vec3& area, const Vec3& toFace, const Vec3& across, double leastExtent) {
-    const Vec3 miss = toFace - (dot(area, toFace) / (dot(area, across) + rootTiny)) * across;
+    const Vec3 miss = toFace - (dot(area, toFace) / (dot(area, across) + tinyDivisor)) * across;
     const double size = norm(miss);
-    const Vec3 direction = divided(miss, size + rootTiny);
+    const Vec3 direction = divided(miss, size + tinyDivisor);
     double extent = leastExtent;
     for (const std::int32_t p : v)
         extent = std::max(extent, std::abs(dot(direction, mesh.points[Index(p)] - faceCentre)));
     return size / extent;
 }
 
-// Volume over that of the regular tetrahedron in the same circumsphere; negative where inverted.
+// Volume over that of the regular tetrahedron in the same circumsphere; negative where inverted. With p, q, r
+// the edges at a, the vector to the circumcentre is (|p|^2 q x r + |q|^2 r x p + |r|^2 p x q) / (2 p . q x
+// r).
 double tetQuality(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-    const double volume = (1.0 / 6.0) * dot(cross(b - a, c - a), d - a);
+    const double regularVolume = 8.0 / (9.0 * std::sqrt(3.0)); // in the unit sphere
     const Vec3 p = b - a, q = c - a, r = d - a;
-    const double lambda = norm2(r) - dot(p, r), mu = norm2(q) - dot(p, q);
-    const Vec3 qp = cross(q, p), rp = cross(r, p);
-    const double denominator = dot(r, qp);
-    double radius = great;
-    if (!(std::abs(denominator) < rootTiny))
-        radius = norm(0.5 * (p + divided(lambda * qp - mu * rp, denominator)));
-    radius = std::min(radius, great);
-    return volume / (8.0 / (9.0 * std::sqrt(3.0)) * (radius * radius * radius) + rootTiny);
+    const Vec3 pq = cross(p, q);
+    const double sixfold = dot(pq, r);
+    double radius = largestRadius;
+    if (std::abs(sixfold) >= tinyDivisor) {
+        const Vec3 toCentre = norm2(p) * cross(q, r) + norm2(q) * cross(r, p) + norm2(r) * pq;
+        radius = std::min(radius, norm(toCentre) / (2 * std::abs(sixfold)));
+    }
+    return sixfold / 6 / (regularVolume * radius * radius * radius + tinyDivisor);
 }
 
 // Sign of the quality where a glance settles that its size is over the tolerance, else 0. With D six times
@@ -63,7 +66,7 @@ int clearSign(double sixfoldVolume, double longest2) {
 bool fanIsGood(const PolyMesh& mesh, std::span<const std::int32_t> v, Index base, const Vec3& apex,
                bool owner) {
     const Vec3& p0 = mesh.points[Index(v[base])];
-    double least = huge;
+    double least = beyondAll;
     for (Index i = 1; i + 1 < v.size(); ++i) {
         const Vec3* a = &mesh.points[Index(v[(i + base) % v.size()])];
         const Vec3* b = &mesh.points[Index(v[(i + base + 1) % v.size()])];
@@ -133,22 +136,22 @@ class FaceCells {
         const Vec3& ownCentre = geometry_.cellCentre[own];
         const Vec3* neiCentre = nullptr;
         double skew = 0, leastPyramid = dot(area, centre - ownCentre);
-        int wrong = leastPyramid / 3 < -small ? 1 : 0;
+        int wrong = leastPyramid / 3 < -rounding ? 1 : 0;
         const Vec3 toFace = centre - ownCentre;
         if (f < internal_) {
             const auto nei = static_cast<Index>(mesh_.neighbour[f]);
             neiCentre = &geometry_.cellCentre[nei];
             const double pyramid = dot(area, *neiCentre - centre);
-            if (pyramid / 3 < -small) ++wrong;
+            if (pyramid / 3 < -rounding) ++wrong;
             leastPyramid = std::min(leastPyramid, pyramid);
             const Vec3 across = *neiCentre - ownCentre;
-            skew = skewness(mesh_, v, centre, area, toFace, across, 0.2 * norm(across) + rootTiny);
+            skew = skewness(mesh_, v, centre, area, toFace, across, 0.2 * norm(across) + tinyDivisor);
             *values = internalValues(id, own, nei, part);
         } else {
             const double size = norm(area);
-            const Vec3 normal = size < rootTiny ? Vec3{} : divided(area, size);
+            const Vec3 normal = size < tinyDivisor ? Vec3{} : divided(area, size);
             const Vec3 across = normal * dot(normal, toFace);
-            skew = skewness(mesh_, v, centre, area, toFace, across, 0.4 * norm(across) + rootTiny);
+            skew = skewness(mesh_, v, centre, area, toFace, across, 0.4 * norm(across) + tinyDivisor);
         }
         part.pyramidErrors += wrong;
         if (wrong > 0) part.wrongOriented.hit(id, -leastPyramid);
@@ -167,17 +170,17 @@ class FaceCells {
         const Vec3& neiCentre = geometry_.cellCentre[nei];
         const Vec3 across = neiCentre - ownCentre;
         InternalValues values;
-        values.ortho = dot(across, area) / (norm(across) * norm(area) + rootTiny);
+        values.ortho = dot(across, area) / (norm(across) * norm(area) + tinyDivisor);
         if (values.ortho < severeCosine_) {
-            ++(values.ortho > small ? part.severe : part.orthoErrors);
+            ++(values.ortho > rounding ? part.severe : part.orthoErrors);
             part.nonOrtho.hit(id, -values.ortho);
         }
         const double ownDistance = std::abs(dot(area, centre - ownCentre));
         const double neiDistance = std::abs(dot(area, neiCentre - centre));
-        values.weight = std::min(neiDistance, ownDistance) / (neiDistance + ownDistance + tiny);
+        values.weight = std::min(neiDistance, ownDistance) / (neiDistance + ownDistance + tinyWeight);
         if (values.weight < m_.limits.faceWeight) part.lowWeight.hit(id, -values.weight);
         const double ownVolume = geometry_.cellVolume[own], neiVolume = geometry_.cellVolume[nei];
-        values.ratio = std::min(ownVolume, neiVolume) / (std::max(ownVolume, neiVolume) + tiny);
+        values.ratio = std::min(ownVolume, neiVolume) / (std::max(ownVolume, neiVolume) + tinyWeight);
         if (values.ratio < m_.limits.volumeRatio) part.lowVolRatio.hit(id, -values.ratio);
         part.ortho.add(values.ortho), part.weight.add(values.weight), part.ratio.add(values.ratio);
         return values;

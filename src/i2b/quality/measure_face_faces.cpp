@@ -87,40 +87,35 @@ bool sharesPlainEdge(Face a, Face b) {
     return b[wrapped(at, 1, b.size())] == a[last] || b[wrapped(at, -1, b.size())] == a[last];
 }
 
-// From the first shared vertex of a, walk back to where the shared stretch begins, then forward along both
-// faces for as many vertices as are shared: do the two keep step? The walks are checkMesh's; on faces with
-// repeated vertices the first could go round forever, hence its limit.
-bool sharedInStep(Face a, Face b, std::int32_t shared) {
+// Do the vertices that a and b share, two or more but not all, make one unbroken stretch of both outlines, in
+// the same or in opposite order? Listed by their position on a, the stretch begins after the only gap there;
+// from then on the position on b must always go one up or always one down. Repeated vertices, which fail a
+// check of their own, count where they come first.
+bool sharedInStep(Face a, Face b, std::vector<std::array<Index, 2>>& shared) {
+    shared.clear();
     for (Index i = 0; i < a.size(); ++i) {
+        if (std::find(a.begin(), a.begin() + std::ptrdiff_t(i), a[i]) != a.begin() + std::ptrdiff_t(i))
+            continue;
         const auto found = std::find(b.begin(), b.end(), a[i]);
-        if (found == b.end()) continue;
-        const auto j = static_cast<Index>(found - b.begin());
-        const std::int32_t nextA = a[wrapped(i, 1, a.size())], beforeA = a[wrapped(i, -1, a.size())];
-        const std::int32_t nextB = b[wrapped(j, 1, b.size())], beforeB = b[wrapped(j, -1, b.size())];
-        int stepA = 1, stepB = -1;
-        if (nextB == nextA)
-            stepA = 1, stepB = 1;
-        else if (nextB == beforeA)
-            stepA = -1, stepB = 1;
-        else if (beforeB == beforeA)
-            stepA = -1, stepB = -1;
-        Index atA = i, atB = j, steps = 0;
-        do {
-            atA = wrapped(atA, stepA, a.size());
-            atB = wrapped(atB, stepB, b.size());
-        } while (a[atA] == b[atB] && ++steps < a.size() + b.size());
-        for (std::int32_t k = 0; k < shared; ++k) {
-            atA = wrapped(atA, -stepA, a.size());
-            atB = wrapped(atB, -stepB, b.size());
-            if (a[atA] != b[atB]) return false;
-        }
-        return true;
+        if (found != b.end()) shared.push_back({i, static_cast<Index>(found - b.begin())});
     }
-    return true;
+    const Index n = shared.size();
+    Index begin = 0, gaps = 0;
+    for (Index i = 0; i < n; ++i)
+        if (wrapped(shared[i][0], 1, a.size()) != shared[(i + 1) % n][0]) begin = (i + 1) % n, ++gaps;
+    if (gaps > 1) return false;
+    bool up = true, down = true;
+    for (Index i = 0; i + 1 < n; ++i) {
+        const Index here = shared[(begin + i) % n][1], next = shared[(begin + i + 1) % n][1];
+        up = up && next == wrapped(here, 1, b.size());
+        down = down && next == wrapped(here, -1, b.size());
+    }
+    return up || down;
 }
 
 void checkFace(const PolyMesh& mesh, const Rows& pointFaces, std::int32_t f, SharedCounts& counts,
                PairPart& part) {
+    std::vector<std::array<Index, 2>> positions;
     const Face face = mesh.face(f);
     counts.clear();
     for (const std::int32_t p : face) {
@@ -138,7 +133,7 @@ void checkFace(const PolyMesh& mesh, const Rows& pointFaces, std::int32_t f, Sha
                 duplicate = true;
         } else {
             if (shared == 2 && sharesPlainEdge(face, other)) return;
-            if (sharedInStep(face, other, shared)) return;
+            if (sharedInStep(face, other, positions)) return;
             outOfStep = true;
         }
         part.faces.push_back(f);

@@ -6,7 +6,7 @@ namespace i2b {
 namespace {
 
 using Index = std::size_t;
-constexpr double small = 1e-15, tinyLength = 1e-150, tinyArea = 1e-300;
+constexpr double rounding = 1e-15, tinyLength = 1e-150, tinyArea = 1e-300;
 
 struct FacePart {
     Tally outOfRange, zeroArea, warped, concave;
@@ -67,10 +67,11 @@ double concavitySine(const PolyMesh& mesh, std::span<const std::int32_t> v, cons
         Vec3 edge = point(i + 1 == v.size() ? 0 : i + 1) - point(i);
         const double length = norm(edge);
         edge = divided(edge, length + tinyLength);
-        if (beforeLength > small && length > small) {
+        if (beforeLength > rounding && length > rounding) {
             const Vec3 turn = cross(before, edge);
             const double sine = norm(turn);
-            if (!(sine < maxSine) && dot(divided(turn, sine), normal) < small) worst = std::max(worst, sine);
+            if (!(sine < maxSine) && dot(divided(turn, sine), normal) < rounding)
+                worst = std::max(worst, sine);
         }
         before = edge;
         beforeLength = length;
@@ -137,7 +138,7 @@ void measureFaces(Measurement& m) {
             const double sine =
                 clearlyConvex(mesh, v, shape.area) ? 0 : concavitySine(mesh, v, shape.area, area, maxSine);
             part.maxConcaveSine = std::max(part.maxConcaveSine, sine);
-            if (sine > small) part.concave.hit(id, sine);
+            if (sine > rounding) part.concave.hit(id, sine);
             flat[f % block] = -1;
             if (v.size() > 3 && area > tinyArea) {
                 const double value = area > tinyLength ? flatness(mesh, v, shape.centre, area) : 1.0;

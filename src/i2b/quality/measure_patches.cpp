@@ -110,7 +110,8 @@ PatchQuality measurePatch(const PolyMesh& mesh, const Patch& patch, std::vector<
 
 Vec3 absolute(const Vec3& a) { return {std::abs(a.x), std::abs(a.y), std::abs(a.z)}; }
 
-// The coordinate direction nearest to the mean normal of a wedge patch, as checkMesh rounds it.
+// The mean normal of a wedge patch, and the plane's own: what the components of the former have over one
+// half.
 struct Wedge {
     Vec3 normal, centreNormal;
 };

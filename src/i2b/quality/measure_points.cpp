@@ -14,9 +14,8 @@ struct Near {
 };
 
 // Marks the ends of all pairs closer than the distance. Sorted along an odd direction, near points are near
-// in the list, and regular meshes do not put whole planes of points at one key. checkMesh sorts by distance
-// from the origin and compares only points whose squared distances from it differ by less than near2; the
-// last test repeats that.
+// in the list, and regular meshes do not put whole planes of points at one key. checkMesh names a pair only
+// if the squared distances of its points from the origin differ by less than near2 too; hence the last test.
 void markNear(const std::vector<Vec3>& points, double near2, std::vector<std::uint8_t>& marks) {
     const Vec3 direction = normalized({0.5377, 0.6180339887, 0.5731});
     RawVector<Near> list(points.size());

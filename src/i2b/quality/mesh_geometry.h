@@ -1,4 +1,4 @@
-// Centres, areas and volumes of a PolyMesh as OpenFOAM v1912 computes them, operation for operation.
+// Centres, areas and volumes of a PolyMesh, by the definitions of OpenFOAM v1912, rounding included.
 #pragma once
 #include "i2b/quality/mesh_topology.h"
 

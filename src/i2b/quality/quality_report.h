@@ -1,4 +1,4 @@
-// Quality of a PolyMesh in OpenFOAM's own measures, to the letter (checkMesh -allTopology -allGeometry).
+// Quality of a PolyMesh in the measures OpenFOAM users know: what checkMesh -allTopology -allGeometry reports.
 #pragma once
 #include "i2b/assemble/poly_mesh.h"
 #include <array>
@@ -110,14 +110,15 @@ struct QualityReport {
     bool ok() const { return failedChecks == 0; }
 };
 
-// Formulas and tolerances: OpenFOAM v1912, evaluated in its order, so that figures agree to the last digit printed,
-// round-off included. Coupled patches (cyclic, processor) are taken as plain boundary. Needs valid indices (what
+// Definitions and tolerances are those of OpenFOAM v1912, and sums run in the order of the mesh, so that figures agree
+// with checkMesh's to the last digit printed. Coupled patches (cyclic, processor) are taken as plain boundary. Needs valid indices (what
 // PolyMesh::validate() says about ranges); anything else may be wrong with the mesh. Deterministic on any number of threads.
 QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits = {});
 
-// The report in checkMesh's own lines and order, from "Mesh stats" to the verdict, so that
-// a diff shows where the two differ. Left out: what checkMesh says about files it writes for regions and point zones.
-// digits: significant ones; checkMesh prints as many as the case's writePrecision says, by default 6.
+// The report as text: what the mesh is made of, its patches, zones and regions, then a table of all checks (worst
+// and mean value, limit, how many are beyond it, verdict, place of the worst) in three groups, and in the last line
+// "all checks pass" or "N of M checks fail". Extended are those that checkMesh makes with -allTopology and
+// -allGeometry only. digits: significant ones.
 std::string formatQuality(const QualityReport& report, int digits = 6);
 
 // The named check, or null where nothing fails it.
