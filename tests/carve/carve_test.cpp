@@ -1,0 +1,92 @@
+// Proves: what carve() leaves can be extruded at every vertex, comes apart alike at both ends of every edge,
+// keeps its clearance and is in one piece, for random walls and for random soups, on grids with jumps in
+// level.
+#include "carve/kept_checks.h"
+#include "i2b/carve/carve.h"
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+namespace i2b::test {
+namespace {
+
+class RandomWalls : public testing::TestWithParam<unsigned> {};
+
+TEST_P(RandomWalls, LeaveAFrontThatCanBeExtruded) {
+    for (unsigned i = 0; i < 12; ++i) {
+        const unsigned seed = 100 * GetParam() + i;
+        const int levels = 1 + static_cast<int>(seed % 3), buffer = 1 + static_cast<int>(seed / 3 % 2);
+        const double closed = 0.02 + 0.04 * (seed % 8);
+        const CarvedAtRandom c(seed, {7, 6, 9}, levels, buffer, closed);
+        EXPECT_EQ(frontFault(c.grid, c.kept), "") << "seed " << seed;
+        // Nothing is added, and all that goes is accounted for.
+        const Region* painted = nullptr;
+        for (const Region& r : c.regions.table) painted = r.painted ? &r : painted;
+        ASSERT_NE(painted, nullptr);
+        std::uint64_t outside = 0;
+        const std::vector<Mask::Ptr> cells = c.regions.cellsOf(painted->id);
+        for (std::size_t l = 0; l < cells.size(); ++l)
+            outside += countOf(*differenceOf(*c.kept.levels[l], *cells[l]));
+        EXPECT_EQ(outside, 0u);
+        EXPECT_EQ(c.kept.carvedForClearance, 0u);
+        EXPECT_EQ(c.kept.cellCount() + c.kept.carvedForFront + c.kept.droppedIslands, painted->cells)
+            << "seed " << seed;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Many, RandomWalls, testing::Range(0u, 8u));
+
+class RandomSoups : public testing::TestWithParam<unsigned> {};
+
+TEST_P(RandomSoups, KeepClearance) {
+    for (unsigned i = 0; i < 5; ++i) {
+        const unsigned seed = GetParam() + caseKinds * i;
+        RandomCase c = randomCase(seed);
+        c.options.fit.clearance = 0.1 + 0.05 * (i % 3);
+        try {
+            const Painted p(c);
+            const KeptCells kept = carve(p.grid, p.cut, p.regions, *p.index, c.options.fit);
+            EXPECT_EQ(frontFault(p.grid, kept), "") << c.kind << ", seed " << seed;
+            EXPECT_GE(leastClearance(p.grid, kept, *p.index), c.options.fit.clearance)
+                << c.kind << ", seed " << seed;
+            std::uint64_t cut = 0;
+            for (std::size_t l = 0; l < p.cut.levels.size(); ++l)
+                cut += countOf(*intersectionOf(*kept.levels[l], *p.cut.levels[l]));
+            EXPECT_EQ(cut, 0u);
+            EXPECT_EQ(kept.zones.empty(), kept.zoneNames.size() == 1);
+            for (std::size_t threads : {1, 3}) {
+                const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+                EXPECT_EQ(carve(p.grid, p.cut, p.regions, *p.index, c.options.fit).checksum(),
+                          kept.checksum());
+            }
+        } catch (const Error& e) {
+            EXPECT_EQ(e.kind(), ErrorKind::input) << e.problem();
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, RandomSoups, testing::Range(0u, caseKinds));
+
+// A passage one cell wide between walls that fill their cells: nothing can be left of it.
+TEST(Carve, RefusesWhatIsTooNarrow) {
+    RandomCase c = randomCase(0);
+    c.soup = Surface{};
+    c.soup.parts = {{"slit", "", 4}};
+    for (double x : {-0.1, 0.1}) {
+        const auto n = static_cast<std::uint32_t>(c.soup.points.size());
+        c.soup.points.insert(c.soup.points.end(), {{x, -2, -2}, {x, 2, -2}, {x, 2, 2}, {x, -2, 2}});
+        c.soup.triangles.insert(c.soup.triangles.end(), {{n, n + 1, n + 2}, {n, n + 2, n + 3}});
+        c.soup.partOf.insert(c.soup.partOf.end(), {0, 0});
+    }
+    c.options.size = {};
+    c.options.size.surface = c.options.size.max =
+        0.2; // planes at -0.1 and 0.1 are faces of cells: one cell between
+    c.options.domain.flow = Flow::automatic;
+    c.options.domain.box = Box{{-1.1, -1, -1}, {1.1, 1, 1}};
+    const Painted all(c);
+    EXPECT_EQ(all.regions.table.size(), 2u); // the cells between are cut, for touching counts
+    c.options.domain.seeds = {{"slit", {0, 0, 0}}};
+    EXPECT_THROW(Painted{c}, Error);
+}
+
+} // namespace
+} // namespace i2b::test

@@ -1,0 +1,42 @@
+// What carved cells must fulfil, looked up in a plain array of the finest cells and not by the stage's own
+// means.
+#pragma once
+#include "i2b/carve/kept_cells.h"
+#include "i2b/geometry/surface_index.h"
+#include "paint/random_grid.h"
+#include "pipeline/random_case.h"
+#include <memory>
+#include <string>
+
+namespace i2b::test {
+
+// "" or the first fault: a fan without direction, an edge that comes apart in two ways, more than one
+// face-connected piece a zone.
+std::string frontFault(const CellGrid& grid, const KeptCells& kept);
+
+// Least distance of kept cells' vertices to the geometry, in edges of the finest cell around the vertex.
+double leastClearance(const CellGrid& grid, const KeptCells& kept, const SurfaceIndex& index);
+
+// The Cartesian stages up to paint.
+struct Painted {
+    explicit Painted(const RandomCase& c);
+    Surface soup;
+    std::unique_ptr<SurfaceIndex> index;
+    SizeField field;
+    CellGrid grid;
+    CutCells cut;
+    Regions regions;
+};
+
+// Random walls instead of a geometry, the largest region kept and carved; the geometry is one triangle far
+// away.
+struct CarvedAtRandom {
+    CarvedAtRandom(unsigned seed, const Index3& count, int levels, int buffer, double closed);
+    Surface far;
+    std::unique_ptr<SurfaceIndex> index;
+    CellGrid grid;
+    Regions regions;
+    KeptCells kept;
+};
+
+} // namespace i2b::test
