@@ -50,6 +50,7 @@ struct DomainOptions {
 struct FitOptions {
     double clearance = 0.1;              // cell edges between a kept lattice vertex and the geometry
     int sweeps = 4;                      // of smoothing and projection
+    bool features = true;                // snap to sharp edges and corners
 };
 
 struct LayerOptions {

@@ -104,9 +104,17 @@ void Assembler::coreFaces(int level, std::size_t node, LatticeMesh::Reader& read
         reader.faces(level, {o[0] + x, o[1] + y, o[2] + z}, [&](const CellFace& face) {
             Pending p{0, face.vertices, face.points};
             if (face.kind == FaceKind::side) return emit(std::size_t(1) + face.side, rank, p);
-            if (face.kind == FaceKind::internal && face.other < rank) return;
-            p.neighbour = face.kind == FaceKind::internal ? static_cast<std::int32_t>(face.other) : layerCell(next++, 0);
-            pending.push_back(p);
+            if (face.kind == FaceKind::internal) {
+                if (face.other < rank) return;
+                p.neighbour = static_cast<std::int32_t>(face.other);
+                pending.push_back(p);
+                return;
+            }
+            for (int i = in_.front.pieces[next]; i > 0; --i, ++next) { // the fit may have split it in two
+                polygon(next, 0, p);
+                p.neighbour = layerCell(next, 0);
+                pending.push_back(p);
+            }
         });
         std::sort(pending.begin(), pending.end(), [](const Pending& a, const Pending& b) { return a.neighbour < b.neighbour; });
         for (const Pending& p : pending) emit(std::size_t(0), rank, p);

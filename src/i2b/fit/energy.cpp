@@ -48,12 +48,49 @@ LocalCorner localCorner(const Corner& c, std::size_t node, const std::vector<Vec
     return local;
 }
 
-struct WallTerm { // weight * (normal . (b - point) / h)^2
+// weight * sum (normal . (b - point) / h)^2 over one normal for a surface, two for a line, three for a point.
+struct WallTerm {
     double weight = 0;
-    Vec3 normal;
-    double offset = 0; // normal . (b - point) / h at the node's present place
+    int planes = 0;
+    std::array<Vec3, 3> normal;
+    std::array<double, 3> offset{}; // normal . (b - point) / h at the node's present place
     double inverseH = 1;
+
+    void add(const Vec3& n, const Vec3& way) {
+        normal[static_cast<std::size_t>(planes)] = n;
+        offset[static_cast<std::size_t>(planes++)] = dot(n, way) * inverseH;
+    }
+    double residual(int i, const Vec3& d) const {
+        return offset[static_cast<std::size_t>(i)] + dot(normal[static_cast<std::size_t>(i)], d) * inverseH;
+    }
 };
+
+// The plane of a wall node's target, or the line or point that it is snapped to.
+WallTerm wallTerm(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const Snap& snap, const std::vector<Vec3>& x,
+                  std::size_t n, double weight) {
+    WallTerm term;
+    term.inverseH = 1 / band.h[n];
+    term.weight = weight;
+    if (snap.kind == SnapKind::none) {
+        const WallTarget target = wallTarget(index, band, n, x[static_cast<std::size_t>(band.frontNode[n])], x[n]);
+        if (target.found) term.add(target.normal, x[n] - target.point);
+        return term;
+    }
+    Vec3 point = snap.point, tangent = snap.tangent;
+    if (snap.kind == SnapKind::line) {
+        const FeatureIndex::Line line = features.closestLine(x[n], 0.5 * band.h[n]);
+        if (line.found) point = line.point, tangent = line.tangent;
+    }
+    const Vec3 way = x[n] - point;
+    if (snap.kind == SnapKind::corner) {
+        term.add({1, 0, 0}, way), term.add({0, 1, 0}, way), term.add({0, 0, 1}, way);
+        return term;
+    }
+    const Vec3 axis = std::abs(tangent.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    const Vec3 u = normalized(cross(tangent, axis));
+    term.add(u, way), term.add(cross(tangent, u), way);
+    return term;
+}
 
 double energyAt(const std::vector<LocalCorner>& corners, const WallTerm& wall, const Vec3& d) {
     double sum = 0;
@@ -63,8 +100,11 @@ double energyAt(const std::vector<LocalCorner>& corners, const WallTerm& wall, c
         const double phi = energyOf(c.trace0 + dot(c.linear, d) + c.quadratic * norm2(d), det);
         sum += c.weight * phi * phi * phi;
     }
-    const double r = wall.offset + dot(wall.normal, d) * wall.inverseH;
-    return sum + wall.weight * r * r;
+    for (int i = 0; i < wall.planes; ++i) {
+        const double r = wall.residual(i, d);
+        sum += wall.weight * r * r;
+    }
+    return sum;
 }
 
 // Gradient and the upper triangle of the Hessian: xx, xy, xz, yy, yz, zz.
@@ -103,10 +143,11 @@ Derivatives derivativesAt(const std::vector<LocalCorner>& corners, const WallTer
         sum.addOuter(c.gradient, w * ((10.0 / 9) * trace * d23 * inverse * inverse + 0.25 * inverse * inverse * inverse));
         sum.addOuter(dphi, 6 * c.weight * phi);
     }
-    const double r = wall.offset + dot(wall.normal, d) * wall.inverseH;
-    const Vec3 n = wall.normal * wall.inverseH;
-    sum.gradient += n * (2 * wall.weight * r);
-    sum.addOuter(n, 2 * wall.weight);
+    for (int i = 0; i < wall.planes; ++i) {
+        const Vec3 n = wall.normal[static_cast<std::size_t>(i)] * wall.inverseH;
+        sum.gradient += n * (2 * wall.weight * wall.residual(i, d));
+        sum.addOuter(n, 2 * wall.weight);
+    }
     return sum;
 }
 
@@ -194,8 +235,8 @@ std::vector<std::int32_t> colourNodes(const Band& band, const std::vector<std::u
     return colour;
 }
 
-void minimiseEnergy(const Band& band, const SurfaceIndex& index, const std::vector<std::uint8_t>& active,
-                    std::vector<Vec3>& x, const EnergyOptions& options, const Context& context) {
+void minimiseEnergy(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Snap>& snaps,
+                    const std::vector<std::uint8_t>& active, std::vector<Vec3>& x, const EnergyOptions& options, const Context& context) {
     std::int32_t colours = 0;
     const std::vector<std::int32_t> colour = colourNodes(band, active, colours);
     std::vector<std::vector<std::uint32_t>> nodes(static_cast<std::size_t>(colours));
@@ -220,15 +261,10 @@ void minimiseEnergy(const Band& band, const SurfaceIndex& index, const std::vect
                     if (corners.empty()) continue;
                     WallTerm wall;
                     if (n < band.walls) {
-                        const Vec3& f = x[static_cast<std::size_t>(band.frontNode[n])];
-                        const WallTarget target = wallTarget(index, band, n, f, x[n]);
-                        if (lambda > 5) floors[n].update(worst, options.floor);
-                        if (target.found) {
-                            wall.inverseH = 1 / band.h[n];
-                            wall.weight = lambda * floors[n].factor;
-                            wall.normal = target.normal;
-                            wall.offset = dot(target.normal, x[n] - target.point) * wall.inverseH;
-                        }
+                        // Nodes on features may be in poorer corners: a sharp edge asks for them.
+                        const double floor = snaps[n].kind == SnapKind::none ? options.floor : options.featureFloor;
+                        if (lambda > 5) floors[n].update(worst, floor);
+                        wall = wallTerm(band, index, features, snaps[n], x, n, lambda * floors[n].factor);
                     }
                     Vec3 d = bestMove(corners, wall, band.outside[n], options.cap * band.h[n], options.newtonSteps);
                     if (d == Vec3{}) continue;

@@ -9,6 +9,18 @@ constexpr int rings = 2;             // of core points behind the front that mov
 constexpr double offTarget = 0.005;  // of h: a wall node farther from its target is worked on
 constexpr double poorEnergy = 2.2;   // phi: nodes of such corners are worked on
 
+void grow(const Band& band, std::vector<std::uint8_t>& marked, int rings) {
+    for (int ring = 0; ring < rings; ++ring) {
+        const std::vector<std::uint8_t> old = marked;
+        parallelFor(band.movable, [&](std::size_t n) {
+            for (const BandEdge& e : band.edges[n]) {
+                const auto b = static_cast<std::size_t>(e.b);
+                if (b < band.movable && old[b]) marked[n] = 1;
+            }
+        });
+    }
+}
+
 // Nodes off their target or in a poor corner, and two rings around them.
 std::vector<std::uint8_t> activeNodes(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x) {
     std::vector<std::uint8_t> active(band.movable, 0);
@@ -21,15 +33,7 @@ std::vector<std::uint8_t> activeNodes(const Band& band, const SurfaceIndex& inde
             active[n] = t.found && norm(t.point - x[n]) > offTarget * band.h[n];
         }
     });
-    for (int ring = 0; ring < 2; ++ring) {
-        const std::vector<std::uint8_t> old = active;
-        parallelFor(band.movable, [&](std::size_t n) {
-            for (const BandEdge& e : band.edges[n]) {
-                const auto b = static_cast<std::size_t>(e.b);
-                if (b < band.movable && old[b]) active[n] = 1;
-            }
-        });
-    }
+    grow(band, active, 2);
     return active;
 }
 
@@ -47,12 +51,33 @@ void store(const Band& band, const std::vector<Vec3>& x, Front& front) {
     }
 }
 
+// The band of a front whose faces were split: the same nodes, other corners. The start positions stay the lattice's.
+Band rebuiltBand(const LatticeMesh& mesh, Front& front, int ringCount, const Band& before) {
+    std::vector<FrontMesh::Point> placed;
+    for (std::size_t v = 0; v < before.walls; ++v) {
+        const FrontMesh::VertexHandle h(static_cast<int>(v));
+        placed.push_back(front.mesh.point(h));
+        front.mesh.set_point(h, {before.start[v].x, before.start[v].y, before.start[v].z});
+    }
+    Band band = buildBand(mesh, front, ringCount);
+    for (std::size_t v = 0; v < before.walls; ++v) front.mesh.set_point(FrontMesh::VertexHandle(static_cast<int>(v)), placed[v]);
+    return band;
+}
+
+// Newly snapped nodes, and two rings around them, are worked on too.
+void activateSnapped(const Band& band, const std::vector<Snap>& snaps, std::vector<std::uint8_t>& active) {
+    std::vector<std::uint8_t> around(band.movable, 0);
+    for (std::size_t n = 0; n < band.walls; ++n) around[n] = snaps[n].kind != SnapKind::none;
+    grow(band, around, 2);
+    for (std::size_t n = 0; n < band.movable; ++n) active[n] = active[n] || around[n];
+}
+
 } // namespace
 
-FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& index, const FeatureGraph&,
+FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& index, const FeatureGraph& graph,
                     const FitOptions& options, const Context& context) {
     FitSummary summary;
-    const Band band = buildBand(mesh, front, rings);
+    Band band = buildBand(mesh, front, rings);
     summary.wallNodes = band.walls;
     context.checkCancelled();
     const std::vector<Vec3> goal = goalPositions(band, index, options.sweeps);
@@ -60,11 +85,34 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     std::vector<Vec3> x;
     const std::vector<double> alpha = blend(band, goal, x);
     for (std::size_t v = 0; v < band.walls; ++v) summary.blended += alpha[v] == 1;
-    const std::vector<std::uint8_t> active = activeNodes(band, index, x);
+
+    const FeatureIndex features(graph);
+    std::vector<Snap> snaps(band.walls);
+    std::vector<std::uint8_t> active = activeNodes(band, index, x);
+    EnergyOptions energy;
+    const auto pull = [&](std::vector<double> weights) {
+        energy.wallWeights = std::move(weights);
+        minimiseEnergy(band, index, features, snaps, active, x, energy, context);
+    };
+    pull({0.1, 10, 100});
+    active = activeNodes(band, index, x);
+    if (options.features) {
+        snapToFeatures(band, front, index, features, x, snaps);
+        activateSnapped(band, snaps, active);
+    }
+    pull({1e3});
+    active = activeNodes(band, index, x);
+    if (options.features) {
+        snapToFeatures(band, front, index, features, x, snaps);
+        store(band, x, front);
+        summary.split = splitAlongFeatures(front, band, index, x, snaps);
+        if (summary.split > 0) band = rebuiltBand(mesh, front, rings, band);
+        activateSnapped(band, snaps, active);
+    }
+    pull({1e3, 1e5, 1e6, 1e6});
+    snapExactly(band, index, features, snaps, x, energy);
+    for (const Snap& s : snaps) summary.snapped += s.kind != SnapKind::none;
     for (std::uint8_t a : active) summary.active += a;
-    const EnergyOptions energy;
-    minimiseEnergy(band, index, active, x, energy, context);
-    snapExactly(band, index, x, energy.floor);
     store(band, x, front);
     return summary;
 }

@@ -7,6 +7,7 @@
 #pragma once
 #include "i2b/core/context.h"
 #include "i2b/fit/band.h"
+#include "i2b/fit/features.h"
 #include "i2b/geometry/features.h"
 #include "i2b/geometry/surface_index.h"
 #include "i2b/options.h"
@@ -20,7 +21,8 @@ struct FitSummary {
     std::size_t wallNodes = 0;
     std::size_t blended = 0;      // wall nodes that reached their goal directly
     std::size_t active = 0;       // nodes that the energy worked on
-    std::size_t onGeometry = 0;   // wall nodes within 0.01 h of their target
+    std::size_t snapped = 0;      // wall nodes held to a feature
+    std::size_t split = 0;        // front faces split along one
 };
 
 // Moves the front's vertices (front and wall positions, movedPoints). Every corner stays positive.
@@ -52,13 +54,15 @@ struct EnergyOptions {
     std::vector<double> wallWeights{0.1, 10, 100, 1e3, 1e5, 1e6};
     int newtonSteps = 3;
     double floor = 0.15;          // scaled Jacobian below which the wall pulls less
+    double featureFloor = 0.1;    // the same for nodes snapped to features
     double cap = 0.3;             // of h: longest step
 };
 // Gauss-Seidel over a colouring of the active nodes. active: per movable node.
-void minimiseEnergy(const Band& band, const SurfaceIndex& index, const std::vector<std::uint8_t>& active,
-                    std::vector<Vec3>& x, const EnergyOptions& options, const Context& context);
+void minimiseEnergy(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Snap>& snaps,
+                    const std::vector<std::uint8_t>& active, std::vector<Vec3>& x, const EnergyOptions& options, const Context& context);
 
 // Moves wall nodes the whole, half or a quarter of the way to their targets where the corners stay good.
-void snapExactly(const Band& band, const SurfaceIndex& index, std::vector<Vec3>& x, double floor);
+void snapExactly(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Snap>& snaps,
+                 std::vector<Vec3>& x, const EnergyOptions& options);
 
 } // namespace i2b

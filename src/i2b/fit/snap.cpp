@@ -13,7 +13,8 @@ double worstCorner(const Band& band, std::size_t n, const std::vector<Vec3>& x) 
 
 } // namespace
 
-void snapExactly(const Band& band, const SurfaceIndex& index, std::vector<Vec3>& x, double floor) {
+void snapExactly(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Snap>& snaps,
+                 std::vector<Vec3>& x, const EnergyOptions& options) {
     std::vector<std::uint8_t> walls(band.movable, 0);
     std::fill_n(walls.begin(), band.walls, std::uint8_t(1));
     std::int32_t colours = 0;
@@ -22,9 +23,19 @@ void snapExactly(const Band& band, const SurfaceIndex& index, std::vector<Vec3>&
         parallelFor(band.walls, [&](std::size_t b) {
             if (colour[b] != k) return;
             const Vec3 f = x[static_cast<std::size_t>(band.frontNode[b])], old = x[b];
-            const WallTarget target = wallTarget(index, band, b, f, old);
-            if (!target.found) return;
-            const Vec3 way = withinSides(target.point - old, band.outside[b]);
+            Vec3 to = snaps[b].point;
+            const double floor = snaps[b].kind == SnapKind::none ? options.floor : options.featureFloor;
+            if (snaps[b].kind == SnapKind::none) {
+                const WallTarget target = wallTarget(index, band, b, f, old);
+                if (!target.found) return;
+                to = target.point;
+            } else if (snaps[b].kind == SnapKind::line) {
+                const FeatureIndex::Line line = features.closestLine(old, 0.5 * band.h[b]);
+                if (line.found) to = line.point;
+            } else if (snaps[b].kind == SnapKind::implicitLine) {
+                to += snaps[b].tangent * dot(old - to, snaps[b].tangent);
+            }
+            const Vec3 way = withinSides(to - old, band.outside[b]);
             if (norm(way) < 1e-12 * band.h[b]) return;
             const double before = worstCorner(band, b, x);
             for (double part : {1.0, 0.5, 0.25}) {

@@ -83,6 +83,7 @@ Front buildFront(const LatticeMesh& mesh, double thickness) {
         }
     }
     front.part.assign(front.ownerCell.size(), 0);
+    front.pieces.assign(front.ownerCell.size(), 1);
     return front;
 }
 
@@ -105,7 +106,7 @@ std::string Front::validate() const {
     if (front.size() != n || corePoint.size() != n || h.size() != n || direction.size() != n || outside.size() != n) {
         return "arrays per vertex differ in length";
     }
-    if (ownerCell.size() != m || part.size() != m || level.size() != m) return "arrays per face differ in length";
+    if (ownerCell.size() != m || part.size() != m || level.size() != m || pieces.size() != m) return "arrays per face differ in length";
     for (auto v : mesh.vertices()) {
         if (mesh.is_isolated(v)) return fmt::format("vertex {} has no face", v.idx());
     }

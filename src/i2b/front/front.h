@@ -29,6 +29,7 @@ struct Front {
     std::vector<std::int32_t> ownerCell;           // core cell number, ascending
     std::vector<std::int32_t> part;                // of the geometry behind it
     std::vector<std::uint8_t> level;               // lattice level: its size
+    std::vector<std::uint8_t> pieces;              // of a lattice face that was split: 2 at the first, 0 at the second; else 1
     // Core points behind the front that the fit has moved, by number.
     std::vector<std::int32_t> movedPoints;
     std::vector<Vec3> movedTo;                     // m

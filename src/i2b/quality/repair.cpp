@@ -1,6 +1,7 @@
 #include "i2b/quality/repair.h"
 #include "i2b/core/parallel.h"
 #include "i2b/quality/mesh_geometry.h"
+#include "i2b/quality/quality_report.h"
 #include <algorithm>
 
 namespace i2b {
@@ -10,6 +11,8 @@ constexpr double stepBack = 0.35; // of the way from start to fit, a round
 constexpr double slope = 0.34;    // largest difference between points of one cell
 constexpr int gentleRounds = 12;  // then the points of a bad cell go back whole
 constexpr int lastRound = 40;
+constexpr int qualityRounds = 8;
+constexpr double qualityStep = 0.2;
 constexpr double flat = 1e-9;     // a pyramid below this part of its cell's size counts as wrong
 
 // The nodes that the fit has placed: core points, then the wall point of each fan.
@@ -84,6 +87,31 @@ void forNodes(const PolyMesh& mesh, const Rows& cellFaces, const Nodes& nodes, s
     }
 }
 
+// Cells at both sides of faces beyond the limits, and cells of small determinant.
+std::vector<std::int32_t> poorCells(const PolyMesh& mesh, std::int64_t& faults) {
+    QualityLimits limits; // a little inside those that the report judges by
+    limits.nonOrthogonality = 68;
+    limits.skewness = 3.8;
+    limits.faceWeight = 0.055;
+    limits.volumeRatio = 0.02;
+    limits.determinant = 0.0015;
+    const QualityReport report = measureQuality(mesh, limits);
+    std::vector<std::int32_t> cells;
+    faults = 0;
+    for (const QualityCheck& check : report.checks) {
+        const bool ofFaces = check.name == "nonOrthoFaces" || check.name == "skewFaces" || check.name == "lowWeightFaces" || check.name == "lowVolRatioFaces";
+        if (!ofFaces && check.name != "underdeterminedCells") continue;
+        faults += check.count;
+        for (std::int32_t id : check.ids) {
+            cells.push_back(ofFaces ? mesh.owner[static_cast<std::size_t>(id)] : id);
+            if (ofFaces && id < mesh.internalFaces()) cells.push_back(mesh.neighbour[static_cast<std::size_t>(id)]);
+        }
+    }
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    return cells;
+}
+
 // Bounds the difference of beta inside cells, starting from cells whose points have just stepped back.
 void spread(const PolyMesh& mesh, const Rows& cellFaces, Nodes& nodes, std::vector<std::int32_t> cells) {
     std::vector<std::uint8_t> queued(static_cast<std::size_t>(mesh.cells), 0);
@@ -104,30 +132,60 @@ void spread(const PolyMesh& mesh, const Rows& cellFaces, Nodes& nodes, std::vect
     }
 }
 
+// The points of the cells step back, and the front and the mesh follow.
+void retreat(const std::vector<std::int32_t>& cells, float step, PolyMesh& mesh, const Rows& cellFaces, Nodes& nodes, Front& front,
+             const LatticeMesh& lattice, const LayerStack& layers) {
+    std::vector<std::uint8_t> done(nodes.beta.size(), 0); // each node steps back once a round
+    for (std::int32_t c : cells) {
+        forNodes(mesh, cellFaces, nodes, c, [&](std::size_t n) {
+            if (done[n]) return;
+            done[n] = 1;
+            nodes.beta[n] = std::max(0.0f, nodes.beta[n] - step);
+        });
+    }
+    spread(mesh, cellFaces, nodes, cells);
+    nodes.store(front);
+    placePoints(lattice, front, layers, mesh.points);
+}
+
 } // namespace
 
 RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, const LayerStack& layers, double startThickness) {
     RepairSummary summary;
     const Rows cellFaces = buildCellFaces(mesh);
     std::vector<std::int32_t> bad = badCells(mesh, cellFaces);
-    summary.badCells = summary.remaining = static_cast<std::int64_t>(bad.size());
-    if (bad.empty()) return summary;
+    summary.badCells = static_cast<std::int64_t>(bad.size());
+    std::vector<std::int32_t> poor = bad.empty() ? poorCells(mesh, summary.poorFaces) : bad;
+    if (poor.empty()) return summary;
     Nodes nodes(front, lattice, layers, startThickness);
-    while (!bad.empty() && summary.rounds < lastRound) {
-        const float step = summary.rounds < gentleRounds ? float(stepBack) : 1.0f;
-        std::vector<std::uint8_t> done(nodes.beta.size(), 0); // each node steps back once a round
-        for (std::int32_t c : bad) {
-            forNodes(mesh, cellFaces, nodes, c, [&](std::size_t n) {
-                if (done[n]) return;
-                done[n] = 1;
-                nodes.beta[n] = std::max(0.0f, nodes.beta[n] - step);
-            });
+    const auto makeValid = [&] {
+        for (int round = 0; !bad.empty() && round < lastRound; ++round, ++summary.rounds) {
+            retreat(bad, round < gentleRounds ? float(stepBack) : 1.0f, mesh, cellFaces, nodes, front, lattice, layers);
+            bad = badCells(mesh, cellFaces);
         }
-        spread(mesh, cellFaces, nodes, bad);
+    };
+    if (!bad.empty()) {
+        makeValid();
+        poor = poorCells(mesh, summary.poorFaces);
+    }
+    // Retreat for quality as long as it helps; the best state counts.
+    summary.poorRemaining = summary.poorFaces;
+    std::vector<float> best = nodes.beta;
+    for (int round = 0; !poor.empty() && bad.empty() && round < qualityRounds; ++round, ++summary.rounds) {
+        retreat(poor, float(qualityStep), mesh, cellFaces, nodes, front, lattice, layers);
+        bad = badCells(mesh, cellFaces);
+        makeValid();
+        std::int64_t faults = 0;
+        poor = poorCells(mesh, faults);
+        if (!bad.empty() || faults >= summary.poorRemaining) continue;
+        summary.poorRemaining = faults;
+        best = nodes.beta;
+    }
+    if (best != nodes.beta) {
+        nodes.beta = best;
         nodes.store(front);
         placePoints(lattice, front, layers, mesh.points);
         bad = badCells(mesh, cellFaces);
-        ++summary.rounds;
     }
     for (float b : nodes.beta) summary.retracted += b < 1;
     summary.remaining = static_cast<std::int64_t>(bad.size());

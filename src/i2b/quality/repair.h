@@ -1,7 +1,8 @@
 // The last guard of validity. The fit judges cells by their corners, which is nearly, not quite, OpenFOAM's measure:
 // where a cell of the assembled mesh has no positive volume or a face pyramid of it points the wrong way, the points
 // around it step back towards the start of the fit, where every cell is right by construction, and so on until none
-// is left. The slope of the retreat is bounded, so that it ends smoothly.
+// is left. The slope of the retreat is bounded, so that it ends smoothly. Then faces over the limits of quality get the
+// same, as far as it helps: a node that is a little off the wall is worth less than a mesh that passes its checks.
 #pragma once
 #include "i2b/assemble/assemble.h"
 #include <cstdint>
@@ -13,6 +14,9 @@ struct RepairSummary {
     std::int64_t badCells = 0;   // at the beginning
     std::int64_t retracted = 0;  // points that stepped back
     std::int64_t remaining = 0;  // bad cells at the end; 0 unless the start itself is wrong
+    std::int64_t poorFaces = 0;  // faces over the limits of non-orthogonality, skewness, weight or volume ratio at the
+                                 // beginning, and cells of small determinant
+    std::int64_t poorRemaining = 0;
 };
 
 // startThickness: what buildFront() was given. Moves points of mesh, and front positions alike.

@@ -1,0 +1,272 @@
+#include "i2b/fit/features.h"
+#include "i2b/core/parallel.h"
+#include "i2b/fit/fit.h"
+#include <algorithm>
+
+namespace i2b {
+namespace {
+
+constexpr double degree = 3.14159265358979323846 / 180;
+const double smallestTurn = std::cos(25 * degree), largestTurn = std::cos(135 * degree);
+const double confirmedTurn = std::cos(35 * degree);
+constexpr double reach = 1.2; // of h: no node is pulled farther to a feature
+
+// What a wall node sees: its place on the geometry and the unit normal there, towards the fluid.
+struct Foot {
+    Vec3 point, normal;
+    bool found = false;
+};
+
+Foot footAt(const SurfaceIndex& index, const Vec3& q, const Vec3& fluid, double radius) {
+    Foot foot;
+    const ClosestPoint c = index.closest(q, radius);
+    if (!c) return foot;
+    foot.point = c.point;
+    foot.normal = index.normal(c.triangle);
+    if (dot(foot.normal, fluid - c.point) < 0) foot.normal = -foot.normal;
+    foot.found = foot.normal != Vec3{};
+    return foot;
+}
+
+Foot footOf(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, std::size_t b) {
+    const Vec3& f = x[static_cast<std::size_t>(band.frontNode[b])];
+    const Vec3 way = f - x[b];
+    const double length = norm(way);
+    const Vec3 q = length > 0 ? x[b] + way * std::min(1.0, 0.1 * band.h[b] / length) : x[b];
+    return footAt(index, q, f, 2 * band.h[b]);
+}
+
+bool turns(const Foot& a, const Foot& b) {
+    const double c = dot(a.normal, b.normal);
+    return a.found && b.found && c < smallestTurn && c > largestTurn;
+}
+
+// The line in which the tangent planes of two feet meet, looked at again on the geometry three times.
+FeatureIndex::Line implicitLine(const SurfaceIndex& index, Foot a, Foot b, const Vec3& fluid, double h) {
+    FeatureIndex::Line line;
+    Vec3 middle = (a.point + b.point) * 0.5;
+    for (int round = 0; round < 3; ++round) {
+        const Vec3 t = cross(a.normal, b.normal);
+        const double s = norm2(t);
+        if (s < 0.15) return line; // planes within 23 degrees
+        // Nearest point to the middle on both planes: middle + u na + v nb.
+        const double c = dot(a.normal, b.normal), da = dot(a.normal, a.point - middle), db = dot(b.normal, b.point - middle);
+        const Vec3 p = middle + a.normal * ((da - c * db) / s) + b.normal * ((db - c * da) / s);
+        if (norm(p - (a.point + b.point) * 0.5) > 1.5 * h) return line;
+        line.point = p;
+        line.tangent = t / std::sqrt(s);
+        // Step off the line along each plane, to the side of its own foot.
+        const auto along = [&](const Foot& foot) {
+            const Vec3 d = foot.point - p;
+            const Vec3 inPlane = d - line.tangent * dot(d, line.tangent) - foot.normal * dot(d, foot.normal);
+            return normalized(inPlane) * (0.15 * h);
+        };
+        const Foot na = footAt(index, p + along(a), fluid, h), nb = footAt(index, p + along(b), fluid, h);
+        if (!na.found || !nb.found) return line;
+        a = na, b = nb, middle = p;
+    }
+    const ClosestPoint on = index.closest(line.point, 0.03 * h);
+    line.found = on && dot(a.normal, b.normal) < confirmedTurn;
+    return line;
+}
+
+struct Crossing {
+    double distance = 0; // in h
+    std::int32_t node = -1, other = -1;
+    Snap snap;
+};
+
+// The better end of a wall edge that crosses a feature.
+Crossing crossingOf(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x,
+                    const std::vector<Foot>& feet, std::int32_t p, std::int32_t q) {
+    Crossing best;
+    const auto a = static_cast<std::size_t>(p), b = static_cast<std::size_t>(q);
+    const double h = std::max(band.h[a], band.h[b]), length = norm(feet[a].point - feet[b].point);
+    const Vec3 middle = (feet[a].point + feet[b].point) * 0.5;
+    FeatureIndex::Line line = features.closestLine(middle, 0.8 * length);
+    SnapKind kind = SnapKind::line;
+    if (!line.found) {
+        line = implicitLine(index, feet[a], feet[b], x[static_cast<std::size_t>(band.frontNode[a])], h);
+        kind = SnapKind::implicitLine;
+    }
+    if (!line.found) return best;
+    for (std::int32_t n : {p, q}) {
+        const auto i = static_cast<std::size_t>(n);
+        FeatureIndex::Line own = line;
+        if (kind == SnapKind::line) own = features.closestLine(x[i], reach * band.h[i]);
+        else own.point = line.point + line.tangent * dot(x[i] - line.point, line.tangent);
+        if (!own.found || band.outside[i] != 0) continue;
+        const double d = norm(own.point - x[i]) / band.h[i];
+        if (d > reach || (best.node >= 0 && d >= best.distance)) continue;
+        best = {d, n, n == p ? q : p, {kind, own.point, own.tangent}};
+    }
+    return best;
+}
+
+bool hangs(const Band& band, std::size_t wall) { return !band.parents[static_cast<std::size_t>(band.frontNode[wall])].empty(); }
+
+std::size_t snapCorners(const Band& band, const FeatureIndex& features, const std::vector<Foot>& feet, const std::vector<Vec3>& x,
+                        std::vector<Snap>& snaps) {
+    struct Candidate {
+        double distance;
+        std::uint32_t corner;
+        std::int32_t node;
+        Vec3 point;
+    };
+    std::vector<Candidate> list(band.walls, Candidate{0, ~0u, -1, {}});
+    parallelFor(band.walls, [&](std::size_t n) {
+        if (hangs(band, n) || band.outside[n] != 0) return;
+        const ClosestPoint c = features.closestCorner(x[n], 0.9 * band.h[n]);
+        if (!c) return;
+        // Only where the wall around really bends: some neighbour stands on another side.
+        for (const BandEdge& e : band.edges[n]) {
+            const auto m = static_cast<std::size_t>(e.b);
+            if (m >= band.walls || !turns(feet[n], feet[m])) continue;
+            list[n] = {c.distance / band.h[n], c.triangle, static_cast<std::int32_t>(n), c.point};
+            return;
+        }
+    });
+    std::erase_if(list, [](const Candidate& c) { return c.node < 0; });
+    std::stable_sort(list.begin(), list.end(), [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
+    std::vector<std::uint32_t> taken;
+    std::size_t added = 0;
+    for (const Snap& s : snaps) {
+        if (s.kind == SnapKind::corner) ++added;
+    }
+    std::size_t before = added;
+    for (const Candidate& c : list) {
+        Snap& snap = snaps[static_cast<std::size_t>(c.node)];
+        if (snap.kind == SnapKind::corner) {
+            taken.push_back(c.corner);
+            continue;
+        }
+        if (std::find(taken.begin(), taken.end(), c.corner) != taken.end()) continue;
+        taken.push_back(c.corner);
+        snap = {SnapKind::corner, c.point, {}};
+        ++added;
+    }
+    return added - before;
+}
+
+} // namespace
+
+FeatureIndex::FeatureIndex(const FeatureGraph& graph) {
+    lines_.parts = corners_.parts = {Part{"features", "", 0}};
+    lines_.points = corners_.points = graph.points;
+    for (const FeatureEdge& e : graph.edges) {
+        if (!(e.kinds & static_cast<std::uint8_t>(EdgeKind::sharp))) continue;
+        lines_.triangles.push_back({e.a, e.b, e.b});
+        lines_.partOf.push_back(0);
+    }
+    for (std::uint32_t c : graph.corners) {
+        corners_.triangles.push_back({c, c, c});
+        corners_.partOf.push_back(0);
+    }
+    if (!lines_.triangles.empty()) lineIndex_ = std::make_unique<SurfaceIndex>(lines_);
+    if (!corners_.triangles.empty()) cornerIndex_ = std::make_unique<SurfaceIndex>(corners_);
+}
+
+FeatureIndex::Line FeatureIndex::closestLine(const Vec3& q, double radius) const {
+    Line line;
+    if (!lineIndex_) return line;
+    const ClosestPoint c = lineIndex_->closest(q, radius);
+    if (!c) return line;
+    const auto& t = lines_.triangles[c.triangle];
+    line.point = c.point;
+    line.tangent = normalized(lines_.points[t[1]] - lines_.points[t[0]]);
+    line.found = line.tangent != Vec3{};
+    return line;
+}
+
+ClosestPoint FeatureIndex::closestCorner(const Vec3& q, double radius) const {
+    return cornerIndex_ ? cornerIndex_->closest(q, radius) : ClosestPoint{};
+}
+
+std::size_t snapToFeatures(const Band& band, const Front& front, const SurfaceIndex& index, const FeatureIndex& features,
+                           const std::vector<Vec3>& x, std::vector<Snap>& snaps) {
+    std::vector<Foot> feet(band.walls);
+    parallelFor(band.walls, [&](std::size_t n) { feet[n] = footOf(band, index, x, n); });
+    std::size_t added = snapCorners(band, features, feet, x, snaps);
+    std::vector<Crossing> crossings(front.mesh.n_edges());
+    parallelFor(crossings.size(), [&](std::size_t e) {
+        const auto he = front.mesh.halfedge_handle(FrontMesh::EdgeHandle(static_cast<int>(e)), 0);
+        const std::int32_t p = front.mesh.from_vertex_handle(he).idx(), q = front.mesh.to_vertex_handle(he).idx();
+        const auto a = static_cast<std::size_t>(p), b = static_cast<std::size_t>(q);
+        if (snaps[a].kind != SnapKind::none || snaps[b].kind != SnapKind::none) return;
+        if (hangs(band, a) || hangs(band, b) || !turns(feet[a], feet[b])) return;
+        crossings[e] = crossingOf(band, index, features, x, feet, p, q);
+    });
+    std::erase_if(crossings, [](const Crossing& c) { return c.node < 0; });
+    std::stable_sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) { return a.distance < b.distance; });
+    for (const Crossing& c : crossings) {
+        Snap& snap = snaps[static_cast<std::size_t>(c.node)];
+        if (snap.kind != SnapKind::none || snaps[static_cast<std::size_t>(c.other)].kind != SnapKind::none) continue;
+        snap = c.snap;
+        ++added;
+    }
+    return added;
+}
+
+std::size_t splitAlongFeatures(Front& front, const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x,
+                               const std::vector<Snap>& snaps) {
+    const std::size_t faces = front.ownerCell.size();
+    std::vector<std::int8_t> diagonal(faces, -1); // 0: vertices 0 and 2, 1: vertices 1 and 3
+    const auto verticesOf = [&](std::size_t f, std::array<std::int32_t, 8>& v) {
+        std::size_t n = 0;
+        for (auto h : front.mesh.fv_range(FrontMesh::FaceHandle(static_cast<int>(f)))) v[n++] = h.idx();
+        return n;
+    };
+    parallelFor(faces, [&](std::size_t f) {
+        std::array<std::int32_t, 8> v{};
+        if (verticesOf(f, v) != 4) return;
+        for (std::size_t d = 0; d < 2; ++d) {
+            const auto s = [&](std::size_t i) { return static_cast<std::size_t>(v[(i + d) % 4]); };
+            if (snaps[s(0)].kind == SnapKind::none || snaps[s(2)].kind == SnapKind::none) continue;
+            const Foot a = footOf(band, index, x, s(1)), b = footOf(band, index, x, s(3));
+            if (!a.found || !b.found || dot(a.normal, b.normal) > smallestTurn) continue;
+            diagonal[f] = static_cast<std::int8_t>(d);
+            return;
+        }
+    });
+    std::size_t count = 0;
+    Front split;
+    split.mesh.reserve(front.mesh.n_vertices(), front.mesh.n_edges() + faces / 8, faces + faces / 8);
+    for (auto v : front.mesh.vertices()) split.mesh.add_vertex(front.mesh.point(v));
+    std::vector<FrontMesh::VertexHandle> polygon;
+    const auto add = [&](std::size_t f, std::initializer_list<std::int32_t> v, std::uint8_t pieces) {
+        polygon.clear();
+        for (std::int32_t i : v) polygon.emplace_back(i);
+        split.mesh.add_face(polygon);
+        split.ownerCell.push_back(front.ownerCell[f]);
+        split.part.push_back(front.part[f]);
+        split.level.push_back(front.level[f]);
+        split.pieces.push_back(pieces);
+    };
+    for (std::size_t f = 0; f < faces; ++f) {
+        std::array<std::int32_t, 8> v{};
+        const std::size_t n = verticesOf(f, v);
+        if (diagonal[f] >= 0) {
+            const auto d = static_cast<std::size_t>(diagonal[f]);
+            add(f, {v[d], v[d + 1], v[d + 2]}, 2);
+            add(f, {v[d], v[d + 2], v[(d + 3) % 4]}, 0);
+            ++count;
+            continue;
+        }
+        polygon.clear();
+        for (std::size_t i = 0; i < n; ++i) polygon.emplace_back(v[i]);
+        split.mesh.add_face(polygon);
+        split.ownerCell.push_back(front.ownerCell[f]);
+        split.part.push_back(front.part[f]);
+        split.level.push_back(front.level[f]);
+        split.pieces.push_back(front.pieces[f]);
+    }
+    if (count == 0) return 0;
+    front.mesh = std::move(split.mesh);
+    front.ownerCell = std::move(split.ownerCell);
+    front.part = std::move(split.part);
+    front.level = std::move(split.level);
+    front.pieces = std::move(split.pieces);
+    return count;
+}
+
+} // namespace i2b

@@ -1,0 +1,51 @@
+// Features of the geometry on the wall mesh: nodes are snapped to sharp edges and corners, and faces whose diagonal
+// lies on an edge are split along it, front and wall alike, so that every prism stands on one side.
+//
+// A wall edge whose two ends lie on surfaces that differ by 25 to 135 degrees crosses a feature. Where the soup has a
+// sharp edge there, that is it; where it has none (parts that intersect without a common edge), it is the line in
+// which the tangent planes of the two ends meet, if the geometry confirms it.
+#pragma once
+#include "i2b/fit/band.h"
+#include "i2b/geometry/features.h"
+#include "i2b/geometry/surface_index.h"
+#include <memory>
+
+namespace i2b {
+
+// Closest sharp edge and closest corner of a feature graph.
+class FeatureIndex {
+  public:
+    explicit FeatureIndex(const FeatureGraph& graph);
+    bool empty() const { return lines_.triangles.empty(); }
+
+    struct Line {
+        Vec3 point, tangent; // tangent: unit
+        bool found = false;
+    };
+    Line closestLine(const Vec3& q, double radius) const;
+    ClosestPoint closestCorner(const Vec3& q, double radius) const; // triangle: number among the corners
+
+  private:
+    Surface lines_, corners_; // segments and points as degenerate triangles
+    std::unique_ptr<SurfaceIndex> lineIndex_, cornerIndex_;
+};
+
+enum class SnapKind : std::uint8_t { none, line, implicitLine, corner };
+
+struct Snap { // what a wall node is held to
+    SnapKind kind = SnapKind::none;
+    Vec3 point;   // m
+    Vec3 tangent; // unit, of the line
+};
+
+// Snaps further nodes, nearest crossings first, one end of an edge at most; those already in snaps stay.
+// Gives how many were added.
+std::size_t snapToFeatures(const Band& band, const Front& front, const SurfaceIndex& index, const FeatureIndex& features,
+                           const std::vector<Vec3>& x, std::vector<Snap>& snaps);
+
+// Splits quads of the front whose diagonal is snapped and whose other two nodes lie on different sides. Front
+// numbering stays but for faces, which are renumbered in order of their owner cells. Gives how many were split.
+std::size_t splitAlongFeatures(Front& front, const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x,
+                               const std::vector<Snap>& snaps);
+
+} // namespace i2b
