@@ -95,6 +95,8 @@ void judgeEdges(const Place& v, const VertexView& view, const VertexPattern& pat
         end.at[std::size_t(axis)] += side ? 1 : -1;
         if (!lookup.isCorner(v.level, end.at)) { // only coarser cells around: the edge is twice as long
             end.at[std::size_t(axis)] += side ? 1 : -1;
+            // Cells there may be coarser still, and would be overlooked from this level.
+            if (!lookup.isCorner(end.level, end.at)) end = {end.level - 1, {end.at[0] / 2, end.at[1] / 2, end.at[2] / 2}};
         }
         // The vertex there may belong to the next finer level.
         const int last = static_cast<int>(grid.levels.size()) - 1;
