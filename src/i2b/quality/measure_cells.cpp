@@ -167,10 +167,13 @@ void checkClosedness(const Measurement& m, std::span<const std::int32_t> faces, 
         most = std::max(most, sizes[k]);
     }
     double aspect = most / (least + tinyDivisor);
-    if (directions.count == 3) {
-        const double volume = std::max(tinyDivisor, m.geometry.cellVolume[Index(cell)]);
-        aspect = std::max(aspect, 1.0 / 6.0 * (sizes.x + sizes.y + sizes.z) / std::pow(volume, 2.0 / 3.0));
-    }
+    const double volume = std::max(tinyDivisor, m.geometry.cellVolume[Index(cell)]);
+    const double surface = 1.0 / 6.0 * (sizes.x + sizes.y + sizes.z);
+    // The power is costly, and of no account where it clearly leaves the ratio below both maximum and limit.
+    const double floor = std::max(aspect, std::min(part.aspectRatio.most, m.limits.aspectRatio)) * 0.999;
+    const bool below = volume > 1e-90 && surface > 1e-90 &&
+                       surface * surface * surface < floor * floor * floor * volume * volume;
+    if (directions.count == 3 && !below) aspect = std::max(aspect, surface / std::pow(volume, 2.0 / 3.0));
     part.openness.add(openness);
     part.aspectRatio.add(aspect);
     if (openness > m.limits.closedness) part.open.hit(cell, openness);
@@ -201,18 +204,20 @@ double determinant(const Measurement& m, std::span<const std::int32_t> faces, co
 }
 
 // Does any face centre lie on the outer side of another face's plane, or in it? The angle is compared without
-// normalising the difference unless it is within rounding of the tolerance.
+// normalising anything unless it is within rounding of the tolerance.
 bool isConcave(const Measurement& m, std::span<const std::int32_t> faces, std::int32_t cell) {
     for (const std::int32_t f : faces) {
-        const Vec3& area = m.geometry.faceArea[Index(f)];
-        Vec3 normal = divided(area, std::max(norm(area), tinyLength));
-        if (m.mesh.owner[Index(f)] != cell) normal = normal * -1.0;
+        const double side = m.mesh.owner[Index(f)] == cell ? 1 : -1;
+        const Vec3 area = m.geometry.faceArea[Index(f)] * side;
+        const double area2 = norm2(area);
         for (const std::int32_t g : faces) {
             if (g == f) continue;
             const Vec3 d = m.geometry.faceCentre[Index(g)] - m.geometry.faceCentre[Index(f)];
-            const double along = dot(d, normal), size2 = norm2(d);
-            if (along < 0 && along * along > (1.01 * planarCosine * planarCosine) * size2 && size2 > 1e-280)
+            const double along = dot(d, area), size2 = norm2(d);
+            if (along < 0 && along * along > (1.01 * planarCosine * planarCosine) * size2 * area2 &&
+                size2 * area2 > 1e-200)
                 continue;
+            const Vec3 normal = divided(area, std::max(std::sqrt(area2), tinyLength));
             if (dot(divided(d, std::max(std::sqrt(size2), tinyLength)), normal) > -planarCosine) return true;
         }
     }

@@ -24,10 +24,14 @@ struct FaceCellPart {
 };
 
 // How far the line between the centres misses the face's centre, over the face's extent that way. The extent
-// is at least leastExtent.
+// is at least leastExtent, so that most faces can be seen not to reach least, and need no closer look: of
+// them -infinity is returned.
 double skewness(const PolyMesh& mesh, std::span<const std::int32_t> v, const Vec3& faceCentre,
-                const Vec3& area, const Vec3& toFace, const Vec3& across, double leastExtent) {
+                const Vec3& area, const Vec3& toFace, const Vec3& across, double leastExtent, double least) {
     const Vec3 miss = toFace - (dot(area, toFace) / (dot(area, across) + tinyDivisor)) * across;
+    const double clearlyLess = 0.999 * least * leastExtent;
+    if (clearlyLess > 1e-140 && norm2(miss) < clearlyLess * clearlyLess)
+        return -std::numeric_limits<double>::infinity();
     const double size = norm(miss);
     const Vec3 direction = divided(miss, size + tinyDivisor);
     double extent = leastExtent;
@@ -108,8 +112,35 @@ bool hasBadTet(const PolyMesh& mesh, std::span<const std::int32_t> v, const Vec3
     return false;
 }
 
+// A glance at all tetrahedra of a face at once: are those over the triangles around its centre, and those of
+// the fan from its first vertex, all clearly on their cell's side? Then the face has no errors. No edge of
+// such a tetrahedron is longer than twice the larger of the reaches from the face's centre to its vertices
+// and to the apex. Worked out from the centre, so that both sides share the cross products.
+bool tetsClearlyGood(const PolyMesh& mesh, std::span<const std::int32_t> v, const Vec3& faceCentre,
+                     const Vec3& owner, const Vec3* neighbour) {
+    const Vec3 toOwner = owner - faceCentre;
+    const Vec3 toNeighbour = neighbour != nullptr ? *neighbour - faceCentre : -toOwner;
+    double reach2 = std::max(norm2(toOwner), norm2(toNeighbour));
+    double least = beyondAll; // of the sixfold volumes
+    const Vec3 first = mesh.points[Index(v[0])] - faceCentre;
+    Vec3 here = first;
+    for (Index i = 1; i <= v.size(); ++i) {
+        const Vec3 next = i == v.size() ? first : mesh.points[Index(v[i])] - faceCentre;
+        reach2 = std::max(reach2, norm2(next));
+        const Vec3 area = cross(here, next);
+        least = std::min(least, std::min(-dot(area, toOwner), dot(area, toNeighbour)));
+        if (i > 1 && i < v.size()) {
+            const Vec3 fan = cross(here - first, next - first);
+            least = std::min(least, std::min(dot(fan, first - toOwner), dot(fan, toNeighbour - first)));
+        }
+        here = next;
+    }
+    return least > 0 && clearSign(least, 4 * reach2) > 0;
+}
+
 int tetErrors(const PolyMesh& mesh, std::span<const std::int32_t> v, const Vec3& faceCentre,
               const Vec3& owner, const Vec3* neighbour) {
+    if (tetsClearlyGood(mesh, v, faceCentre, owner, neighbour)) return 0;
     int errors = hasBadTet(mesh, v, faceCentre, owner, -1) ? 1 : 0;
     if (neighbour != nullptr && hasBadTet(mesh, v, faceCentre, *neighbour, 1)) ++errors;
     if (!hasGoodBase(mesh, v, owner, neighbour)) ++errors;
@@ -136,6 +167,7 @@ class FaceCells {
         const Vec3& ownCentre = geometry_.cellCentre[own];
         const Vec3* neiCentre = nullptr;
         double skew = 0, leastPyramid = dot(area, centre - ownCentre);
+        const double least = std::min(part.skewness.most, m_.limits.skewness); // less is not asked for
         int wrong = leastPyramid / 3 < -rounding ? 1 : 0;
         const Vec3 toFace = centre - ownCentre;
         if (f < internal_) {
@@ -145,13 +177,13 @@ class FaceCells {
             if (pyramid / 3 < -rounding) ++wrong;
             leastPyramid = std::min(leastPyramid, pyramid);
             const Vec3 across = *neiCentre - ownCentre;
-            skew = skewness(mesh_, v, centre, area, toFace, across, 0.2 * norm(across) + tinyDivisor);
+            skew = skewness(mesh_, v, centre, area, toFace, across, 0.2 * norm(across) + tinyDivisor, least);
             *values = internalValues(id, own, nei, part);
         } else {
             const double size = norm(area);
             const Vec3 normal = size < tinyDivisor ? Vec3{} : divided(area, size);
             const Vec3 across = normal * dot(normal, toFace);
-            skew = skewness(mesh_, v, centre, area, toFace, across, 0.4 * norm(across) + tinyDivisor);
+            skew = skewness(mesh_, v, centre, area, toFace, across, 0.4 * norm(across) + tinyDivisor, least);
         }
         part.pyramidErrors += wrong;
         if (wrong > 0) part.wrongOriented.hit(id, -leastPyramid);

@@ -1,5 +1,6 @@
 #include "i2b/quality/measure_steps.h"
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <tbb/parallel_sort.h>
 
@@ -8,9 +9,79 @@ namespace {
 
 using Index = std::size_t;
 
+// Which points may have another one nearby: those whose cell of a coarse lattice, or one that they nearly
+// reach, has been entered before or after by another point, or so a table of bits says. It errs to one side
+// only: points of different cells may have one bit.
+class Crowded {
+  public:
+    Crowded(const std::vector<Vec3>& points, double reach) : points_(points), reach_(reach) {
+        Index size = Index(1) << 16;
+        while (size < 16 * points.size() && size < Index(1) << 30) size *= 2;
+        mask_ = size - 1;
+        once_.assign(size / 64, 0);
+        twice_.assign(size / 64, 0);
+        parallelFor(
+            points.size(),
+            [&](Index i) {
+                forCells(points[i], [&](Index slot) {
+                    const std::uint64_t bit = std::uint64_t(1) << (slot % 64);
+                    const std::uint64_t before = std::atomic_ref<std::uint64_t>(once_[slot / 64])
+                                                     .fetch_or(bit, std::memory_order_relaxed);
+                    if ((before & bit) != 0)
+                        std::atomic_ref<std::uint64_t>(twice_[slot / 64])
+                            .fetch_or(bit, std::memory_order_relaxed);
+                });
+            },
+            4096);
+    }
+    bool operator()(Index i) const {
+        bool crowded = false;
+        forCells(points_[i],
+                 [&](Index slot) { crowded = crowded || (twice_[slot / 64] >> (slot % 64) & 1) != 0; });
+        return crowded;
+    }
+
+  private:
+    static constexpr double cellsPerReach = 1.0 / 61; // lattices of meshes have other spacings
+
+    // All cells within reach of p, each once: mostly one.
+    template <class Body>
+    void forCells(const Vec3& p, const Body& body) const {
+        const double scale = cellsPerReach / reach_;
+        std::array<std::int64_t, 3> lo, hi;
+        for (int k = 0; k < 3; ++k) {
+            lo[Index(k)] = cellOf((p[k] - reach_) * scale);
+            hi[Index(k)] = cellOf((p[k] + reach_) * scale);
+        }
+        for (std::int64_t x = lo[0]; x <= hi[0]; ++x)
+            for (std::int64_t y = lo[1]; y <= hi[1]; ++y)
+                for (std::int64_t z = lo[2]; z <= hi[2]; ++z) body(slotOf(x, y, z));
+    }
+    static std::int64_t cellOf(double x) {
+        if (!(std::abs(x) < 1e18)) return 0; // no number, or out of all proportion
+        const auto whole = static_cast<std::int64_t>(x);
+        return static_cast<double>(whole) > x ? whole - 1 : whole;
+    }
+    Index slotOf(std::int64_t x, std::int64_t y, std::int64_t z) const {
+        std::uint64_t h = std::uint64_t(x) * 0x9e3779b97f4a7c15U;
+        h = (h ^ (h >> 29) ^ std::uint64_t(y)) * 0xbf58476d1ce4e5b9U;
+        h = (h ^ (h >> 31) ^ std::uint64_t(z)) * 0x94d049bb133111ebU;
+        return Index(h >> 32) & mask_;
+    }
+
+    const std::vector<Vec3>& points_;
+    double reach_;
+    Index mask_ = 0;
+    std::vector<std::uint64_t> once_, twice_;
+};
+
 struct Near {
     double key;
     std::int32_t point;
+};
+struct NearList {
+    std::vector<Near> list;
+    void join(const NearList& next) { list.insert(list.end(), next.list.begin(), next.list.end()); }
 };
 
 // Marks the ends of all pairs closer than the distance. Sorted along an odd direction, near points are near
@@ -18,17 +89,18 @@ struct Near {
 // if the squared distances of its points from the origin differ by less than near2 too; hence the last test.
 void markNear(const std::vector<Vec3>& points, double near2, std::vector<std::uint8_t>& marks) {
     const Vec3 direction = normalized({0.5377, 0.6180339887, 0.5731});
-    RawVector<Near> list(points.size());
-    parallelFor(
-        points.size(),
-        [&](Index i) {
-            list[i] = {dot(direction, points[i]), static_cast<std::int32_t>(i)};
-        },
-        4096);
+    if (!(near2 > 0)) return; // nothing is nearer
+    const double reach = std::sqrt(near2) * 1.001;
+    const Crowded crowded(points, reach);
+    NearList candidates;
+    orderedLoop(points.size(), candidates, [&](Index begin, Index end, NearList& part) {
+        for (Index i = begin; i < end; ++i)
+            if (crowded(i)) part.list.push_back({dot(direction, points[i]), static_cast<std::int32_t>(i)});
+    });
+    std::vector<Near>& list = candidates.list;
     tbb::parallel_sort(list.begin(), list.end(), [](const Near& a, const Near& b) {
         return a.key < b.key || (a.key == b.key && a.point < b.point);
     });
-    const double reach = std::sqrt(near2) * 1.001;
     parallelFor(
         list.size(),
         [&](Index i) {
