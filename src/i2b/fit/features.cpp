@@ -9,6 +9,7 @@ namespace {
 constexpr double degree = 3.14159265358979323846 / 180;
 const double smallestTurn = std::cos(25 * degree), largestTurn = std::cos(135 * degree);
 const double confirmedTurn = std::cos(35 * degree);
+const double flatCorner = std::cos(140 * degree);
 constexpr double reach = 1.2; // of h: no node is pulled farther to a feature
 
 // What a wall node sees: its place on the geometry and the unit normal there, towards the fluid.
@@ -226,6 +227,14 @@ std::size_t splitAlongFeatures(Front& front, const Band& band, const SurfaceInde
             if (!a.found || !b.found || dot(a.normal, b.normal) > smallestTurn) continue;
             diagonal[f] = static_cast<std::int8_t>(d);
             return;
+        }
+        // A snapped node between two others of the same line has no corner in the quad: two triangles give it two.
+        double widest = flatCorner;
+        for (std::size_t i = 0; i < 4; ++i) {
+            const auto at = [&](std::size_t k) { return static_cast<std::size_t>(v[k % 4]); };
+            if (snaps[at(i)].kind == SnapKind::none) continue;
+            const double c = dot(normalized(x[at(i + 1)] - x[at(i)]), normalized(x[at(i + 3)] - x[at(i)]));
+            if (c < widest) widest = c, diagonal[f] = static_cast<std::int8_t>(i % 2);
         }
     });
     std::size_t count = 0;
