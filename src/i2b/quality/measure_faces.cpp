@@ -1,4 +1,5 @@
 #include "i2b/quality/measure_steps.h"
+#include <array>
 #include <atomic>
 #include <numbers>
 
@@ -27,9 +28,10 @@ void mark(std::vector<std::uint8_t>& marks, std::int32_t i) {
     std::atomic_ref<std::uint8_t>(marks[Index(i)]).store(1, std::memory_order_relaxed);
 }
 
-int repeatedVertices(std::span<const std::int32_t> v) {
+template <class Count>
+int repeatedVertices(std::span<const std::int32_t> v, Count n) {
     int repeated = 0;
-    for (Index i = 1; i < v.size(); ++i)
+    for (Index i = 1; i < n; ++i)
         for (Index j = 0; j < i; ++j)
             if (v[i] == v[j]) {
                 ++repeated;
@@ -40,18 +42,16 @@ int repeatedVertices(std::span<const std::int32_t> v) {
 
 // Does every corner clearly turn with the normal? Of two unit vectors the dot product is then far above the
 // limit that concavitySine compares it with, which is the rounding error; no roots, no divisions.
-bool clearlyConvex(const PolyMesh& mesh, std::span<const std::int32_t> v, const Vec3& area) {
-    const auto point = [&](Index i) -> const Vec3& { return mesh.points[Index(v[i])]; };
+template <class Count>
+bool clearlyConvex(const Vec3* edge, Count n, const Vec3& area) {
     const double area2 = norm2(area);
-    Vec3 before = point(0) - point(v.size() - 1);
-    for (Index i = 0; i < v.size(); ++i) {
-        const Vec3 edge = point(i + 1 == v.size() ? 0 : i + 1) - point(i);
-        const Vec3 turn = cross(before, edge);
+    bool convex = true;
+    for (Index i = 0; i < n; ++i) {
+        const Vec3 turn = cross(edge[i == 0 ? n - 1 : i - 1], edge[i]);
         const double along = dot(turn, area);
-        if (!(along > 0 && along * along > 1e-16 * norm2(turn) * area2 && along > 1e-140)) return false;
-        before = edge;
+        convex = convex && along > 1e-140 && along * along > 1e-16 * norm2(turn) * area2;
     }
-    return true;
+    return convex;
 }
 
 // Sine of the largest angle at which two consecutive edges turn against the normal; 0: none over the limit.
@@ -80,15 +80,77 @@ double concavitySine(const PolyMesh& mesh, std::span<const std::int32_t> v, cons
 }
 
 // The face's area over the sum of its triangles' areas around the centre.
-double flatness(const PolyMesh& mesh, std::span<const std::int32_t> v, const Vec3& centre, double areaSize) {
+template <class Count>
+double flatness(const Vec3* point, const Vec3* edge, Count n, const Vec3& centre, double areaSize) {
     double sum = 0;
-    for (Index i = 0; i < v.size(); ++i) {
-        const Vec3& here = mesh.points[Index(v[i])];
-        const Vec3& next = mesh.points[Index(v[i + 1 == v.size() ? 0 : i + 1])];
-        sum += norm(0.5 * cross(next - here, centre - here));
-    }
+    for (Index i = 0; i < n; ++i) sum += norm(0.5 * cross(edge[i], centre - point[i]));
     return areaSize / (sum + tinyLength);
 }
+
+class FaceMeasure {
+  public:
+    explicit FaceMeasure(Measurement& m)
+        : m_(m), maxSine_(std::sin(m.limits.concavity * std::numbers::pi / 180)),
+          short2_(nearDistanceSquared(m.report.box)) {}
+
+    // Returns the flatness, or -1 of a face that has none.
+    double measure(std::int32_t id, FacePart& part) {
+        const std::span<const std::int32_t> v = m_.mesh.face(id);
+        if (v.size() == 4) {
+            std::array<Vec3, 4> point, edge;
+            return measure(id, v, std::integral_constant<Index, 4>{}, point.data(), edge.data(), part);
+        }
+        points_.resize(v.size());
+        edges_.resize(v.size());
+        return measure(id, v, v.size(), points_.data(), edges_.data(), part);
+    }
+
+  private:
+    template <class Count>
+    double measure(std::int32_t id, std::span<const std::int32_t> v, Count n, Vec3* point, Vec3* edge,
+                   FacePart& part) {
+        for (Index i = 0; i < n; ++i) point[i] = m_.mesh.points[Index(v[i])];
+        double shortest2 = std::numeric_limits<double>::infinity();
+        for (Index i = 0; i < n; ++i) {
+            edge[i] = point[i + 1 == n ? 0 : i + 1] - point[i];
+            const double length2 = norm2(edge[i]);
+            part.edge2.add(length2);
+            shortest2 = std::min(shortest2, length2);
+        }
+        if (shortest2 < short2_) markShortEdges(v, edge);
+        const FaceShape shape = shapeOfPolygon(point, n);
+        m_.geometry.faceCentre[Index(id)] = shape.centre;
+        m_.geometry.faceArea[Index(id)] = shape.area;
+        const double area = norm(shape.area);
+        part.area.add(area);
+        if (area < m_.limits.faceArea) part.zeroArea.hit(id, -area);
+        if (const int repeated = repeatedVertices(v, n); repeated > 0) {
+            part.faultyVertices += repeated;
+            part.outOfRange.hit(id, repeated);
+        }
+        if (!clearlyConvex(edge, n, shape.area)) {
+            const double sine = concavitySine(m_.mesh, v, shape.area, area, maxSine_);
+            part.maxConcaveSine = std::max(part.maxConcaveSine, sine);
+            if (sine > rounding) part.concave.hit(id, sine);
+        }
+        if (n <= 3 || !(area > tinyArea)) return -1;
+        const double value = area > tinyLength ? flatness(point, edge, n, shape.centre, area) : 1.0;
+        ++part.flatnessFaces;
+        part.flatness.add(value);
+        if (value < m_.limits.flatness) part.warped.hit(id, -value);
+        return value;
+    }
+
+    void markShortEdges(std::span<const std::int32_t> v, const Vec3* edge) {
+        for (Index i = 0; i < v.size(); ++i)
+            if (norm2(edge[i]) < short2_)
+                for (const std::int32_t p : {v[i], v[i + 1 == v.size() ? 0 : i + 1]}) mark(m_.shortPoints, p);
+    }
+
+    Measurement& m_;
+    double maxSine_, short2_;
+    std::vector<Vec3> points_, edges_;
+};
 
 } // namespace
 
@@ -106,8 +168,6 @@ double nearDistanceSquared(const Box& box) { return norm2(1e-6 * box.extent()); 
 void measureFaces(Measurement& m) {
     const PolyMesh& mesh = m.mesh;
     const auto faces = static_cast<Index>(mesh.faces());
-    const double maxSine = std::sin(m.limits.concavity * std::numbers::pi / 180);
-    const double short2 = nearDistanceSquared(m.report.box);
     m.geometry.faceCentre.resize(faces);
     m.geometry.faceArea.resize(faces);
     m.shortPoints.assign(mesh.points.size(), 0);
@@ -116,38 +176,9 @@ void measureFaces(Measurement& m) {
     double flatSum = 0;
     FacePart total;
     const auto measure = [&](Index begin, Index end, FacePart& part) {
-        for (Index f = begin; f < end; ++f) {
-            const auto id = static_cast<std::int32_t>(f);
-            const std::span<const std::int32_t> v = mesh.face(id);
-            const FaceShape shape = measureFace(mesh, id);
-            m.geometry.faceCentre[f] = shape.centre;
-            m.geometry.faceArea[f] = shape.area;
-            const double area = norm(shape.area);
-            part.area.add(area);
-            if (area < m.limits.faceArea) part.zeroArea.hit(id, -area);
-            if (const int repeated = repeatedVertices(v); repeated > 0) {
-                part.faultyVertices += repeated;
-                part.outOfRange.hit(id, repeated);
-            }
-            for (Index i = 0; i < v.size(); ++i) {
-                const std::int32_t a = v[i], b = v[i + 1 == v.size() ? 0 : i + 1];
-                const double length2 = norm2(mesh.points[Index(a)] - mesh.points[Index(b)]);
-                part.edge2.add(length2);
-                if (length2 < short2) mark(m.shortPoints, a), mark(m.shortPoints, b);
-            }
-            const double sine =
-                clearlyConvex(mesh, v, shape.area) ? 0 : concavitySine(mesh, v, shape.area, area, maxSine);
-            part.maxConcaveSine = std::max(part.maxConcaveSine, sine);
-            if (sine > rounding) part.concave.hit(id, sine);
-            flat[f % block] = -1;
-            if (v.size() > 3 && area > tinyArea) {
-                const double value = area > tinyLength ? flatness(mesh, v, shape.centre, area) : 1.0;
-                flat[f % block] = value;
-                ++part.flatnessFaces;
-                part.flatness.add(value);
-                if (value < m.limits.flatness) part.warped.hit(id, -value);
-            }
-        }
+        FaceMeasure face(m);
+        for (Index f = begin; f < end; ++f)
+            flat[f % block] = face.measure(static_cast<std::int32_t>(f), part);
     };
     orderedBlocks(faces, block, total, measure, [&](Index begin, Index end) {
         for (Index i = 0; i < end - begin; ++i)
@@ -165,7 +196,7 @@ void measureFaces(Measurement& m) {
         r.meanFaceFlatness = flatSum / static_cast<double>(total.flatnessFaces);
     }
     r.warpedFaces = total.warped.count;
-    r.nearDistance = std::sqrt(short2);
+    r.nearDistance = std::sqrt(nearDistanceSquared(r.box));
     m.tallies.outOfRangeFaces = total.outOfRange;
     m.tallies.zeroAreaFaces = total.zeroArea;
     m.tallies.concaveFaces = total.concave;

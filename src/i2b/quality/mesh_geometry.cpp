@@ -1,37 +1,32 @@
 #include "i2b/quality/mesh_geometry.h"
 #include "i2b/core/parallel.h"
+#include <array>
 
 namespace i2b {
 namespace {
 
 using Index = std::size_t;
-constexpr double tinyArea = 1e-150;   // below it a polygon has no area
 constexpr double tinyVolume = 1e-300; // below it a cell has no volume to weigh with
 
 } // namespace
 
 FaceShape measureFace(const PolyMesh& mesh, std::int32_t face) {
     const std::span<const std::int32_t> v = mesh.face(face);
-    const auto point = [&](Index i) -> const Vec3& { return mesh.points[Index(v[i])]; };
-    if (v.size() == 3)
-        return {(1.0 / 3.0) * (point(0) + point(1) + point(2)),
-                0.5 * cross(point(1) - point(0), point(2) - point(0))};
-    Vec3 mean = point(0);
-    for (Index i = 1; i < v.size(); ++i) mean += point(i);
-    mean = divided(mean, static_cast<double>(v.size()));
-    Vec3 normal, weighted;
-    double area = 0;
-    for (Index i = 0; i < v.size(); ++i) {
-        const Vec3& here = point(i);
-        const Vec3& next = point(i + 1 == v.size() ? 0 : i + 1);
-        const Vec3 n = cross(next - here, mean - here);
-        const double a = norm(n);
-        normal += n;
-        area += a;
-        weighted += a * (here + next + mean);
+    const auto gather = [&](Vec3* points) {
+        for (Index i = 0; i < v.size(); ++i) points[i] = mesh.points[Index(v[i])];
+    };
+    if (v.size() == 4) {
+        std::array<Vec3, 4> four;
+        gather(four.data());
+        return shapeOfPolygon(four.data(), std::integral_constant<Index, 4>{});
     }
-    if (area < tinyArea) return {mean, {}};
-    return {divided((1.0 / 3.0) * weighted, area), 0.5 * normal};
+    if (std::array<Vec3, 16> few; v.size() <= few.size()) {
+        gather(few.data());
+        return shapeOfPolygon(few.data(), v.size());
+    }
+    std::vector<Vec3> many(v.size());
+    gather(many.data());
+    return shapeOfPolygon(many.data(), v.size());
 }
 
 void measureCell(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::int32_t cell,

@@ -19,6 +19,31 @@ struct FaceShape {
 };
 
 // A polygon as the fan of triangles around the mean of its vertices: centre weighted by the triangles' areas.
+// n: of its points; a constant of the compiler's makes it faster.
+template <class Count>
+FaceShape shapeOfPolygon(const Vec3* point, Count n) {
+    constexpr double tinyArea = 1e-150; // below it a polygon has no area
+    if (n == 3)
+        return {(1.0 / 3.0) * (point[0] + point[1] + point[2]),
+                0.5 * cross(point[1] - point[0], point[2] - point[0])};
+    Vec3 mean = point[0];
+    for (std::size_t i = 1; i < n; ++i) mean += point[i];
+    mean = divided(mean, static_cast<double>(n));
+    Vec3 normal, weighted;
+    double area = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        const Vec3& here = point[i];
+        const Vec3& next = point[i + 1 == n ? 0 : i + 1];
+        const Vec3 twice = cross(next - here, mean - here);
+        const double size = norm(twice);
+        normal += twice;
+        area += size;
+        weighted += size * (here + next + mean);
+    }
+    if (area < tinyArea) return {mean, {}};
+    return {divided((1.0 / 3.0) * weighted, area), 0.5 * normal};
+}
+
 FaceShape measureFace(const PolyMesh& mesh, std::int32_t face);
 
 // A cell as pyramids on its faces with their apex at the mean of the face centres. Needs faceCentre and
