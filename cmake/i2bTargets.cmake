@@ -3,16 +3,6 @@
 #   OPENVDB gives it the shared precompiled OpenVDB header (20 s a file without it).
 function(i2b_stage name)
   cmake_parse_arguments(arg "OPENVDB" "" "SOURCES;LINK" ${ARGN})
-  # I2B_SKIP_MISSING
-  foreach(source ${arg_SOURCES})
-    if(NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${source})
-      message(WARNING "missing ${source}")
-      list(REMOVE_ITEM arg_SOURCES ${source})
-    endif()
-  endforeach()
-  if(NOT arg_SOURCES)
-    return()
-  endif()
   add_library(i2b_${name} OBJECT ${arg_SOURCES})
   target_include_directories(i2b_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>)
   target_link_libraries(i2b_${name} PRIVATE i2b_settings PUBLIC TBB::tbb fmt::fmt ${arg_LINK})
