@@ -1,0 +1,203 @@
+// Proves: no step of the fit inverts a corner; the energy falls, ends where its gradient is nought and its
+// gradient is the one that finite differences give; the exact snap keeps the floor; the domain's sides stay
+// planes to the last bit.
+#include "carve/kept_checks.h"
+#include "i2b/carve/carve.h"
+#include "i2b/fit/fit.h"
+#include <gtest/gtest.h>
+
+namespace i2b::test {
+namespace {
+
+struct Setting { // a soup up to the band
+    explicit Setting(unsigned seed)
+        : painted(randomCase(seed)),
+          kept(carve(painted.grid, painted.cut, painted.regions, *painted.index, FitOptions{})),
+          lattice(painted.grid, kept), front(buildFront(lattice, startThickness)),
+          band(buildBand(lattice, front, 2)), features(buildFeatureGraph(painted.soup, FeatureOptions{})),
+          snaps(band.walls) {}
+    Painted painted;
+    KeptCells kept;
+    LatticeMesh lattice;
+    Front front;
+    Band band;
+    FeatureIndex features;
+    std::vector<Snap> snaps; // none
+};
+
+// Settings of the seeds that can be meshed at all; f(setting, seed).
+template <class F>
+void forSettings(unsigned kind, const F& f) {
+    int made = 0;
+    for (unsigned seed = kind; seed < kind + 4 * caseKinds; seed += caseKinds) {
+        std::unique_ptr<Setting> setting;
+        try {
+            setting = std::make_unique<Setting>(seed);
+        } catch (const Error& e) {
+            EXPECT_EQ(e.kind(), ErrorKind::input) << e.problem();
+            continue;
+        }
+        if (setting->band.walls == 0) continue;
+        ++made;
+        f(*setting, seed);
+    }
+    EXPECT_GT(made, 0);
+}
+
+std::size_t inverted(const Band& band, const std::vector<Vec3>& x) {
+    std::size_t n = 0;
+    for (const Corner& c : band.corners) n += !(scaledJacobian(c, x) > 0);
+    return n;
+}
+
+double energyOver(const Band& band, std::span<const std::int32_t> corners, const std::vector<Vec3>& x) {
+    double sum = 0;
+    for (std::int32_t c : corners) {
+        const Corner& corner = band.corners[static_cast<std::size_t>(c)];
+        sum += double(corner.weight) * std::pow(cornerEnergy(corner, x), 3);
+    }
+    return sum;
+}
+
+double energyOver(const Band& band, const std::vector<Vec3>& x) {
+    double sum = 0;
+    for (const Corner& c : band.corners) sum += double(c.weight) * std::pow(cornerEnergy(c, x), 3);
+    return sum;
+}
+
+class Fit : public testing::TestWithParam<unsigned> {};
+
+TEST_P(Fit, StartIsValidAndBlendStaysSo) {
+    forSettings(GetParam(), [](const Setting& s, unsigned seed) {
+        EXPECT_EQ(inverted(s.band, s.band.start), 0u) << "seed " << seed;
+        const std::vector<Vec3> goal = goalPositions(s.band, *s.painted.index, 4);
+        std::vector<Vec3> x;
+        const std::vector<double> alpha = blend(s.band, goal, x);
+        EXPECT_EQ(inverted(s.band, x), 0u) << "seed " << seed;
+        for (std::size_t n = 0; n < s.band.movable; ++n) {
+            ASSERT_TRUE(alpha[n] >= 0 && alpha[n] <= 1);
+            ASSERT_LT(norm(x[n] - s.band.start[n] - (goal[n] - s.band.start[n]) * alpha[n]), 1e-12);
+        }
+        for (std::size_t n = s.band.movable; n < s.band.nodes(); ++n) ASSERT_EQ(x[n], s.band.start[n]);
+        // Goals that no mesh could follow are blended just as safely.
+        std::vector<Vec3> wild = s.band.start;
+        for (std::size_t n = 0; n < s.band.movable; ++n) {
+            const auto i = static_cast<double>(n);
+            wild[n] += Vec3{std::sin(i), std::cos(3 * i), std::sin(7 * i)} * s.band.h[n];
+        }
+        blend(s.band, wild, x);
+        EXPECT_EQ(inverted(s.band, x), 0u) << "seed " << seed;
+    });
+}
+
+TEST_P(Fit, EnergyFallsAndNoCornerTurnsOver) {
+    forSettings(GetParam(), [](const Setting& s, unsigned seed) {
+        const std::vector<std::uint8_t> all(s.band.movable, 1);
+        const Context context;
+        EnergyOptions shapeOnly;
+        shapeOnly.wallWeights = {0};
+        std::vector<Vec3> x = s.band.start;
+        double last = energyOver(s.band, x);
+        for (int sweep = 0; sweep < 3; ++sweep) {
+            minimiseEnergy(s.band, *s.painted.index, s.features, s.snaps, all, x, shapeOnly, context);
+            const double now = energyOver(s.band, x);
+            EXPECT_LT(now, last) << "seed " << seed;
+            last = now;
+        }
+        EXPECT_EQ(inverted(s.band, x), 0u) << "seed " << seed;
+        const EnergyOptions whole;
+        minimiseEnergy(s.band, *s.painted.index, s.features, s.snaps, all, x, whole, context);
+        EXPECT_EQ(inverted(s.band, x), 0u) << "seed " << seed;
+        // The exact snap: a node either keeps its corners above the floor, or makes its worst no worse.
+        const auto worst = [&](const std::vector<Vec3>& at) {
+            double w = 1;
+            for (const Corner& c : s.band.corners) w = std::min(w, scaledJacobian(c, at));
+            return w;
+        };
+        const double before = worst(x);
+        snapExactly(s.band, *s.painted.index, s.features, s.snaps, x, whole);
+        EXPECT_GT(worst(x), 0) << "seed " << seed;
+        EXPECT_GE(worst(x), std::min(before, whole.floor) - 1e-12) << "seed " << seed;
+    });
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, Fit, testing::Values(1u, 2u, 5u, 7u));
+
+// One free node, all else fixed: Newton's steps end where central differences of the public energy vanish,
+// which they do not at the start; so gradient and Hessian are those of that energy.
+TEST(Energy, SingleNodesEndWhereTheGradientVanishes) {
+    const Setting s(1);
+    ASSERT_GT(s.band.walls, 20u);
+    EnergyOptions options;
+    options.wallWeights.assign(30, 0);
+    const Context context;
+    const auto gradientAt = [&](std::size_t n, std::vector<Vec3> x) {
+        Vec3 g;
+        const double step = 1e-5 * s.band.h[n];
+        for (int a = 0; a < 3; ++a) {
+            const double at = x[n][a];
+            x[n][a] = at + step;
+            const double up = energyOver(s.band, s.band.cornersOf[n], x);
+            x[n][a] = at - step;
+            g[a] = (up - energyOver(s.band, s.band.cornersOf[n], x)) / (2 * step) * s.band.h[n];
+            x[n][a] = at;
+        }
+        return norm(g);
+    };
+    int tried = 0, still = 0;
+    for (std::size_t n = 0; n < s.band.movable && tried < 60; n += 1 + s.band.movable / 60) {
+        if (s.band.cornersOf[n].empty() || s.band.outside[n]) continue;
+        ++tried;
+        std::vector<std::uint8_t> one(s.band.movable, 0);
+        one[n] = 1;
+        std::vector<Vec3> x = s.band.start;
+        minimiseEnergy(s.band, *s.painted.index, s.features, s.snaps, one, x, options, context);
+        EXPECT_LE(energyOver(s.band, s.band.cornersOf[n], x),
+                  energyOver(s.band, s.band.cornersOf[n], s.band.start));
+        for (std::size_t m = 0; m < s.band.nodes(); ++m) ASSERT_TRUE(m == n || x[m] == s.band.start[m]);
+        // A way that the geometry bars may end early; few are.
+        still += gradientAt(n, x) < 1e-4 * (1 + gradientAt(n, s.band.start));
+    }
+    EXPECT_GE(tried, 20);
+    EXPECT_GE(still, tried * 9 / 10);
+}
+
+// Where the geometry runs through the domain's sides, all that lay in a side still does, exactly.
+TEST(FitFront, SidesOfTheDomainStayPlanes) {
+    std::size_t onSides = 0;
+    forSettings(5, [&](Setting& s, unsigned seed) {
+        FeatureGraph graph = buildFeatureGraph(s.painted.soup, FeatureOptions{});
+        const std::vector<std::uint8_t> outside = s.front.outside;
+        const std::vector<Vec3> lattice = s.lattice.latticePoints();
+        const Context context;
+        fitFront(s.front, s.lattice, *s.painted.index, graph, FitOptions{}, context);
+        EXPECT_EQ(s.front.validate(), "") << "seed " << seed;
+        const Box domain = s.lattice.lattice().domain();
+        const auto keeps = [&](const Vec3& p, std::uint8_t sides) {
+            for (int side = 0; side < 6; ++side) {
+                if (!(sides >> side & 1)) continue;
+                ++onSides;
+                EXPECT_EQ(p[side / 2], side % 2 ? domain.hi[side / 2] : domain.lo[side / 2])
+                    << "seed " << seed;
+            }
+        };
+        for (std::size_t v = 0; v < outside.size(); ++v) {
+            const auto& p = s.front.mesh.point(FrontMesh::VertexHandle(static_cast<int>(v)));
+            keeps({p[0], p[1], p[2]}, outside[v]);
+            keeps(s.front.front[v], outside[v]);
+        }
+        for (std::size_t i = 0; i < s.front.movedPoints.size(); ++i) {
+            const Vec3& from = lattice[static_cast<std::size_t>(s.front.movedPoints[i])];
+            std::uint8_t sides = 0;
+            for (int side = 0; side < 6; ++side) {
+                if (from[side / 2] == (side % 2 ? domain.hi[side / 2] : domain.lo[side / 2]))
+                    sides = static_cast<std::uint8_t>(sides | 1 << side);
+            }
+            keeps(s.front.movedTo[i], sides);
+        }
+    });
+    EXPECT_GT(onSides, 100u);
+}
+
+} // namespace
+} // namespace i2b::test
