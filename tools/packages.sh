@@ -4,7 +4,7 @@ build_packages=(
   ca-certificates git g++ cmake ninja-build ccache pkg-config
   libtbb-dev libopenvdb-dev libboost-dev libboost-iostreams-dev libblosc-dev
   libembree-dev libopenmesh-dev libeigen3-dev zlib1g-dev libxxhash-dev
-  libcli11-dev libtomlplusplus-dev libfmt-dev libspdlog-dev nlohmann-json3-dev
+  libcli11-dev libtomlplusplus-dev libfmt-dev nlohmann-json3-dev
   libdeflate-dev libgtest-dev libgmock-dev libbenchmark-dev
 )
 test_packages=(openfoam openfoam-examples python3-openvdb python3-vtk9)
