@@ -228,6 +228,13 @@ std::vector<std::int32_t> colourNodes(const Band& band, const std::vector<std::u
             }
         }
         // A front node and its wall nodes look at each other's place, corner or not.
+        const auto avoid = [&](std::int32_t m) {
+            if (colour[static_cast<std::size_t>(m)] >= 0) used |= std::uint64_t(1) << std::min(63, colour[static_cast<std::size_t>(m)]);
+        };
+        if (n < band.walls) avoid(band.frontNode[n]);
+        if (n >= band.walls && n < band.walls + band.fronts) {
+            for (std::int32_t fan : band.fansOf[n - band.walls]) avoid(fan);
+        }
         const std::int32_t free = std::countr_one(used);
         colour[n] = free;
         colours = std::max(colours, free + 1);

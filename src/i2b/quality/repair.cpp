@@ -11,7 +11,7 @@ constexpr double stepBack = 0.35; // of the way from start to fit, a round
 constexpr double slope = 0.34;    // largest difference between points of one cell
 constexpr int gentleRounds = 12;  // then the points of a bad cell go back whole
 constexpr int lastRound = 40;
-constexpr int qualityRounds = 8;
+constexpr int qualityRounds = 14;
 constexpr double qualityStep = 0.2;
 constexpr double flat = 1e-9;     // a pyramid below this part of its cell's size counts as wrong
 
@@ -27,6 +27,7 @@ class Nodes {
             start.push_back(f + Vec3{double(d[0]), double(d[1]), double(d[2])} * (thickness * front.h[v]));
         }
         fitted = start;
+        corePoint_.assign(front.corePoint.begin(), front.corePoint.end());
         for (std::size_t i = 0; i < front.movedPoints.size(); ++i) fitted[static_cast<std::size_t>(front.movedPoints[i])] = front.movedTo[i];
         for (std::size_t v = 0; v < front.front.size(); ++v) {
             const auto& p = front.mesh.point(FrontMesh::VertexHandle(static_cast<int>(v)));
@@ -40,6 +41,9 @@ class Nodes {
         const auto p = static_cast<std::size_t>(point);
         return p < core_ ? p : core_ + (p - core_) / layers_;
     }
+    // The place of a layer point hangs on the front point of its fan too, which its cell may not have.
+    bool ofLayer(std::int32_t point) const { return static_cast<std::size_t>(point) >= core_; }
+    std::size_t frontOf(std::size_t node) const { return static_cast<std::size_t>(corePoint_[node - core_]); }
     Vec3 place(std::size_t n) const { return beta[n] == 1.0f ? fitted[n] : start[n] + (fitted[n] - start[n]) * double(beta[n]); }
     void store(Front& front) const {
         for (std::size_t i = 0; i < front.movedPoints.size(); ++i) front.movedTo[i] = place(static_cast<std::size_t>(front.movedPoints[i]));
@@ -52,6 +56,7 @@ class Nodes {
 
   private:
     std::size_t core_, layers_;
+    std::vector<std::int32_t> corePoint_;
 
   public:
     std::vector<Vec3> start, fitted;
@@ -83,7 +88,10 @@ std::vector<std::int32_t> badCells(const PolyMesh& mesh, const Rows& cellFaces) 
 template <class F>
 void forNodes(const PolyMesh& mesh, const Rows& cellFaces, const Nodes& nodes, std::int32_t cell, const F& f) {
     for (std::int32_t face : cellFaces[cell]) {
-        for (std::int32_t p : mesh.face(face)) f(nodes.of(p));
+        for (std::int32_t p : mesh.face(face)) {
+            f(nodes.of(p));
+            if (nodes.ofLayer(p)) f(nodes.frontOf(nodes.of(p)));
+        }
     }
 }
 

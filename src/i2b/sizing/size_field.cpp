@@ -39,7 +39,11 @@ Flow resolvedFlow(const DomainOptions& domain) {
 int levelFor(const Vec3& base, double size) {
     const double widest = std::max(base.x, std::max(base.y, base.z));
     int level = 0;
-    while (level < highestLevel && std::ldexp(widest, -level) > size * (1 + slack)) ++level;
+    while (std::ldexp(widest, -level) > size * (1 + slack)) {
+        if (++level <= highestLevel) continue;
+        throw Error(ErrorKind::input, fmt::format("cells of {:g} m are too small for a largest cell of {:g} m", size, widest),
+                    fmt::format("more than {} levels", highestLevel), "give a larger --size or a smaller --max-size");
+    }
     return level;
 }
 
