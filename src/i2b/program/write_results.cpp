@@ -1,4 +1,5 @@
 #include "i2b/program/write_results.h"
+#include "i2b/quality/cell_quality.h"
 #include "i2b/write/atomic_folder.h"
 #include "i2b/write/foam_write.h"
 #include "i2b/write/ply_write.h"
@@ -25,7 +26,13 @@ void writeMeshFiles(const PolyMesh& mesh, const OutputOptions& output, AtomicFol
         options.note = "i2b " I2B_VERSION;
         writeFoam(mesh, folder, options, context);
     }
-    if (wants(output, "vtu")) writeVtu(mesh, {}, folder.place("mesh.vtu"), {}, context);
+    if (wants(output, "vtu")) {
+        CellQuality q = measureCellQuality(mesh);
+        const std::vector<CellData> data{{"nonOrthogonality", std::move(q.nonOrthogonality)},
+                                         {"skewness", std::move(q.skewness)},
+                                         {"volume", std::move(q.volume)}};
+        writeVtu(mesh, data, folder.place("mesh.vtu"), {}, context);
+    }
     if (wants(output, "ply")) writePly(mesh, folder.place("wall.ply"), context);
 }
 

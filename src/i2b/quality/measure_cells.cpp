@@ -1,12 +1,13 @@
 #include "i2b/quality/cell_edges.h"
 #include "i2b/quality/measure_steps.h"
+#include "i2b/quality/skewness.h"
 #include <map>
 
 namespace i2b {
 namespace {
 
 using Index = std::size_t;
-constexpr double tinyDivisor = 1e-150, tinyLength = 1e-300, beyondAll = 1e300;
+constexpr double tinyLength = 1e-300, beyondAll = 1e300;
 constexpr double planarCosine = 1e-6; // face centres nearer a face's plane than this make a cell concave
 
 struct CellPart {

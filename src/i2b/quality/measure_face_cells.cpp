@@ -1,11 +1,12 @@
 #include "i2b/quality/measure_steps.h"
+#include "i2b/quality/skewness.h"
 #include <numbers>
 
 namespace i2b {
 namespace {
 
 using Index = std::size_t;
-constexpr double rounding = 1e-15, tinyDivisor = 1e-150, tinyWeight = 1e-300, largestRadius = 1e15,
+constexpr double rounding = 1e-15, tinyWeight = 1e-300, largestRadius = 1e15,
                  beyondAll = 1e300;
 constexpr double tetTolerance = rounding * rounding;
 
@@ -22,23 +23,6 @@ struct FaceCellPart {
         ortho.join(o.ortho), skewness.join(o.skewness), weight.join(o.weight), ratio.join(o.ratio);
     }
 };
-
-// How far the line between the centres misses the face's centre, over the face's extent that way. The extent
-// is at least leastExtent, so that most faces can be seen not to reach least, and need no closer look: of
-// them -infinity is returned.
-double skewness(const PolyMesh& mesh, std::span<const std::int32_t> v, const Vec3& faceCentre,
-                const Vec3& area, const Vec3& toFace, const Vec3& across, double leastExtent, double least) {
-    const Vec3 miss = toFace - (dot(area, toFace) / (dot(area, across) + tinyDivisor)) * across;
-    const double clearlyLess = 0.999 * least * leastExtent;
-    if (clearlyLess > 1e-140 && norm2(miss) < clearlyLess * clearlyLess)
-        return -std::numeric_limits<double>::infinity();
-    const double size = norm(miss);
-    const Vec3 direction = divided(miss, size + tinyDivisor);
-    double extent = leastExtent;
-    for (const std::int32_t p : v)
-        extent = std::max(extent, std::abs(dot(direction, mesh.points[Index(p)] - faceCentre)));
-    return size / extent;
-}
 
 // Volume over that of the regular tetrahedron in the same circumsphere; negative where inverted. With p, q, r
 // the edges at a, the vector to the circumcentre is (|p|^2 q x r + |q|^2 r x p + |r|^2 p x q) / (2 p . q x

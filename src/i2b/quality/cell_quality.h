@@ -1,0 +1,16 @@
+// Quality cell by cell, for looking at: the worst of each cell's faces.
+#pragma once
+#include "i2b/assemble/poly_mesh.h"
+#include <vector>
+
+namespace i2b {
+
+struct CellQuality {                     // one value per cell each
+    std::vector<float> nonOrthogonality; // degrees, over internal faces
+    std::vector<float> skewness;
+    std::vector<float> volume;           // m^3
+};
+
+CellQuality measureCellQuality(const PolyMesh& mesh);
+
+} // namespace i2b
