@@ -9,7 +9,7 @@ function(i2b_stage name)
   if(arg_OPENVDB)
     target_link_libraries(i2b_${name} PUBLIC OpenVDB::openvdb)
     if(NOT TARGET i2b_vdb_pch)
-      file(WRITE ${PROJECT_BINARY_DIR}/pch/vdb_pch.cpp "#include \"i2b/grid/vdb.h\"\n")
+      file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/pch/vdb_pch.cpp CONTENT "#include \"i2b/grid/vdb.h\"\n") # written only where it differs
       add_library(i2b_vdb_pch OBJECT ${PROJECT_BINARY_DIR}/pch/vdb_pch.cpp)
       target_include_directories(i2b_vdb_pch PUBLIC ${PROJECT_SOURCE_DIR}/src)
       target_link_libraries(i2b_vdb_pch PRIVATE i2b_settings PUBLIC TBB::tbb fmt::fmt OpenVDB::openvdb)
