@@ -119,14 +119,7 @@ std::vector<Place> notExtrudable(const std::vector<Place>& vertices, const CellG
             pickNearest(view, grid, index,
                         [&](int o) { return pattern.component[std::size_t(o)] == pattern.fanComponent[f]; }, out);
         }
-        if (pattern.fans > 1 || !pattern.allGood) judgeEdges(v, view, pattern, grid, lookup, index, out);
-        else {
-            for (Alternation a : pattern.edge) {
-                if (a == Alternation::none) continue;
-                judgeEdges(v, view, pattern, grid, lookup, index, out);
-                break;
-            }
-        }
+        judgeEdges(v, view, pattern, grid, lookup, index, out);
     });
 }
 

@@ -167,7 +167,7 @@ double estimateBytes(const Surface& surface, const SizeField& field, int layers,
         [](double a, double b) { return a + b; });
     wall = sum;
     cut = 1.5 * sum;
-    double cells = 8 * cut + std::ldexp(1.0, 0) * field.lattice.count[0] * double(field.lattice.count[1]) * field.lattice.count[2];
+    double cells = 8 * cut + field.lattice.count[0] * double(field.lattice.count[1]) * field.lattice.count[2];
     for (const LevelBox& rule : field.boxes) {
         double n = 1;
         const Vec3 h = field.lattice.cellSize(rule.level);
