@@ -15,14 +15,17 @@ struct GeometryOptions {
     double featureAngle = 40;            // degrees; 180: no features
 };
 
+// One size for all axes.
+constexpr Vec3 sameSize(double size) { return {size, size, size}; }
+
 struct PartSize {
     std::string part;                    // name or regular expression (whole name)
-    double size = 0;                     // m, largest cell that may meet it
+    Vec3 size;                           // m, largest cell that may meet it, along each axis
 };
 
 struct BoxSize {
     Box box;                             // m
-    double size = 0;                     // m, largest cell inside
+    Vec3 size;                           // m, largest cell inside, along each axis
 };
 
 struct SizeOptions {

@@ -104,10 +104,8 @@ double leastClearance(const CellGrid& grid, const KeptCells& kept, const Surface
 
 Painted::Painted(const RandomCase& c) : soup(c.soup), index(std::make_unique<SurfaceIndex>(soup)) {
     field = makeSizeField(soup, c.options.size, c.options.domain);
-    const std::vector<Mask::Ptr> target = cutAtTargetLevels(soup, field), boxes = wantedByBoxes(field);
-    std::vector<Mask::Ptr> wanted;
-    for (std::size_t l = 0; l < target.size(); ++l) wanted.push_back(unionOf(*target[l], *boxes[l]));
-    grid = buildCellGrid(field, wanted);
+    const std::vector<CellLevel> target = cutAtTargetLevels(soup, field);
+    grid = buildCellGrid(field, wantedCells(field, target));
     cut = cutLeafCells(soup, field, grid, target);
     regions = labelRegions(grid, cut);
     chooseRegions(regions, grid, cut, c.options.domain);

@@ -37,43 +37,55 @@ Built build(const Surface& soup, const SizeOptions& size) {
     DomainOptions domain;
     domain.box = Box{{-2, -2.5, -2}, {2, 2, 3}};
     b.field = makeSizeField(soup, size, domain);
-    std::vector<Mask::Ptr> at = cutAtTargetLevels(soup, b.field);
-    const std::vector<Mask::Ptr> boxes = wantedByBoxes(b.field);
-    std::vector<Mask::Ptr> wanted;
-    for (std::size_t l = 0; l < at.size(); ++l) wanted.push_back(unionOf(*at[l], *boxes[l]));
-    b.grid = buildCellGrid(b.field, wanted);
+    const std::vector<CellLevel> at = cutAtTargetLevels(soup, b.field);
+    b.grid = buildCellGrid(b.field, wantedCells(b.field, at));
     b.cut = cutLeafCells(soup, b.field, b.grid, at);
     return b;
 }
 
-class Grid : public testing::TestWithParam<unsigned> {};
-
-TEST_P(Grid, IsValidAndCutsAreExact) {
-    const Surface soup = randomSoup(GetParam(), 30, 3);
-    SizeOptions size;
-    size.surface = 0.13;
-    size.max = 0.6;
-    size.parts.push_back({"p1", 0.07});
-    size.boxes.push_back({{{-1.5, -1.5, -1.5}, {-1.2, -1.1, -1}}, 0.08});
+// Every leaf cell is marked cut exactly where a triangle meets it, and as fine as those triangles ask.
+void expectExact(const Surface& soup, const SizeOptions& size) {
     const Built b = build(soup, size);
     EXPECT_EQ(b.grid.validate(), "");
     for (std::size_t l = 0; l < b.grid.levels.size(); ++l) {
         const MaskReader cut(*b.cut.levels[l]);
         for (auto it = b.grid.levels[l].cells->cbeginValueOn(); it; ++it) {
-            const Box box = b.grid.lattice.cellBox(static_cast<int>(l), toIndex(it.getCoord()));
+            const Box box = b.grid.lattice.cellBox(b.grid.levels[l].level, toIndex(it.getCoord()));
             bool meets = false;
             for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
                 const auto& v = soup.triangles[t];
                 if (!triangleMeetsBox(soup.points[v[0]], soup.points[v[1]], soup.points[v[2]], box)) continue;
                 meets = true;
-                EXPECT_GE(static_cast<int>(l), b.field.partLevel[static_cast<std::size_t>(soup.partOf[t])]);
+                const LevelTriple asked = b.field.target(soup, t), level = b.grid.levels[l].level;
+                EXPECT_EQ(finerOf(level, asked), level);
             }
             EXPECT_EQ(cut.isValueOn(it.getCoord()), meets);
             if (box.overlaps(Box{{-1.49, -1.49, -1.49}, {-1.21, -1.11, -1.01}})) {
-                EXPECT_LE(b.grid.lattice.h(static_cast<int>(l)), 0.08 * (1 + 1e-9));
+                EXPECT_LE(b.grid.lattice.h(b.grid.levels[l].level), 0.08 * (1 + 1e-9));
             }
         }
     }
+}
+
+class Grid : public testing::TestWithParam<unsigned> {};
+
+TEST_P(Grid, IsValidAndCutsAreExact) {
+    SizeOptions size;
+    size.surface = 0.13;
+    size.max = 0.6;
+    size.parts.push_back({"p1", sameSize(0.07)});
+    size.boxes.push_back({{{-1.5, -1.5, -1.5}, {-1.2, -1.1, -1}}, sameSize(0.08)});
+    expectExact(randomSoup(GetParam(), 30, 3), size);
+}
+
+TEST_P(Grid, IsValidAndExactWithOneSizePerAxis) {
+    SizeOptions size;
+    size.surface = 0.26;
+    size.max = 0.6;
+    size.parts.push_back({"p1", {0.07, 0.26, 0.13}});
+    size.parts.push_back({"p2", {0.26, 0.26, 0.07}});
+    size.boxes.push_back({{{-1.5, -1.5, -1.5}, {-1.2, -1.1, -1}}, sameSize(0.08)});
+    expectExact(randomSoup(GetParam(), 15, 3), size);
 }
 
 TEST_P(Grid, IsTheSameOnAnyNumberOfThreads) {

@@ -12,7 +12,7 @@ struct Room {
         SizeField field;
         field.lattice.base = {1, 1, 1};
         field.lattice.count = {8, 8, 8};
-        grid = buildCellGrid(field, {std::make_shared<Mask>(false)});
+        grid = buildCellGrid(field, wantedCells(field, {}));
         auto mask = std::make_shared<Mask>(false);
         for (int i = 0; i < 512 && walls; ++i) {
             const Index3 c{i % 8, i / 8 % 8, i / 64};

@@ -17,7 +17,7 @@ inline CellGrid randomGrid(unsigned seed, const Index3& count, int levels, int b
     field.lattice.count = count;
     field.lattice.maxLevel = levels - 1;
     field.bufferCells = buffer;
-    std::vector<Mask::Ptr> wanted;
+    WantedCells wanted;
     for (int l = 0; l < levels; ++l) {
         auto mask = std::make_shared<Mask>(false);
         const Index3 n = field.lattice.cells(l);
@@ -27,7 +27,7 @@ inline CellGrid randomGrid(unsigned seed, const Index3& count, int levels, int b
                 c[a] = static_cast<std::int32_t>(random() % static_cast<unsigned>(n[a]));
             mask->setValueOn(toCoord(c));
         }
-        wanted.push_back(mask);
+        for (auto& axis : wanted.axis) axis.push_back(mask);
     }
     return buildCellGrid(field, wanted);
 }

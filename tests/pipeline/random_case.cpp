@@ -254,10 +254,10 @@ RandomCase randomCase(unsigned seed) {
         break;
     }
     if (seed % caseKinds == 7) {
-        o.size.parts.push_back({"fine", h / (m.chance(0.8) ? 2 : 4)});
+        o.size.parts.push_back({"fine", sameSize(h / (m.chance(0.8) ? 2 : 4))});
         o.size.max = h * 2;
     } else if (m.chance(0.25)) {
-        o.size.boxes.push_back({{m.point(0.6), {}}, h / 2});
+        o.size.boxes.push_back({{m.point(0.6), {}}, sameSize(h / 2)});
         o.size.boxes.back().box.hi = o.size.boxes.back().box.lo + Vec3{0.3, 0.2, 0.4};
     }
     if (seed % caseKinds == 8 || (seed % caseKinds == 1 && m.chance(0.4))) o.domain.flow = Flow::internal;

@@ -19,8 +19,8 @@ Case everything() {
     o.size.surface = 0.1;
     o.size.max = 1e22;
     o.size.min = 1e-7;
-    o.size.parts = {{"wheel.*", 0.05}, {"fin\\d", 2}};
-    o.size.boxes = {{{{-1, -2, -3}, {4, 5, 6.5}}, 0.25}};
+    o.size.parts = {{"wheel.*", sameSize(0.05)}, {"fin\\d", {2, 1, 0.5}}};
+    o.size.boxes = {{{{-1, -2, -3}, {4, 5, 6.5}}, sameSize(0.25)}};
     o.size.bufferCells = 5;
     o.domain.box = Box{{-1.5, 0, 0}, {1, 2, 3}};
     o.domain.flow = Flow::internal;

@@ -108,9 +108,9 @@ TEST(CommandLine, SetsEveryOption) {
     EXPECT_TRUE(line.given.quiet);
     ASSERT_EQ(o.size.parts.size(), 2u);
     EXPECT_EQ(o.size.parts[1].part, "fin.*");
-    EXPECT_EQ(o.size.parts[1].size, 0.1);
+    EXPECT_EQ(o.size.parts[1].size, sameSize(0.1));
     ASSERT_EQ(o.size.boxes.size(), 1u);
-    EXPECT_EQ(o.size.boxes[0].size, 0.5);
+    EXPECT_EQ(o.size.boxes[0].size, sameSize(0.5));
     EXPECT_EQ(o.size.bufferCells, 4);
     EXPECT_EQ(o.fit.clearance, 0.2);
     EXPECT_EQ(o.fit.sweeps, 6);

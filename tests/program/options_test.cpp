@@ -45,23 +45,23 @@ TEST(Validate, NamesEachBrokenOption) {
         {"min-size", [](Options& o) { o.size.min = 0.02; }},
         {"part-size",
          [](Options& o) {
-             o.size.parts = {{"wheel", 0}};
+             o.size.parts = {{"wheel", sameSize(0)}};
          }},
         {"part-size",
          [](Options& o) {
-             o.size.parts = {{"wheel(", 0.01}};
+             o.size.parts = {{"wheel(", sameSize(0.01)}};
          }},
         {"part-size",
          [](Options& o) {
-             o.size.min = 0.005, o.size.parts = {{"wheel", 0.001}};
+             o.size.min = 0.005, o.size.parts = {{"wheel", sameSize(0.001)}};
          }},
         {"box-size",
          [](Options& o) {
-             o.size.boxes = {{{{0, 0, 0}, {1, 1, 0}}, 0.1}};
+             o.size.boxes = {{{{0, 0, 0}, {1, 1, 0}}, sameSize(0.1)}};
          }},
         {"box-size",
          [](Options& o) {
-             o.size.boxes = {{{{0, 0, 0}, {1, 1, 1}}, 0}};
+             o.size.boxes = {{{{0, 0, 0}, {1, 1, 1}}, sameSize(0)}};
          }},
         {"buffer-cells", [](Options& o) { o.size.bufferCells = 0; }},
         {"box",

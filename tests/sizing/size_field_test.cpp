@@ -50,7 +50,7 @@ TEST(SizeField, OneNumberIsEnough) {
             EXPECT_GE(domain.hi[a] - body.hi[a], 40 - 1e-9);
             EXPECT_LE(f.lattice.base[a], f.maxSize * (1 + 1e-9));
         }
-        for (std::int32_t level : f.partLevel) {
+        for (const LevelTriple& level : f.partLevel) {
             const Vec3 s = f.lattice.cellSize(level);
             EXPECT_LE(std::max({s.x, s.y, s.z}), d * (1 + 1e-6));
             EXPECT_GE(2 * std::max({s.x, s.y, s.z}), d); // and no smaller than it takes
@@ -74,16 +74,16 @@ TEST(SizeField, BoxAndSizesThatDivideAreTakenAsTheyAre) {
     const Box box{{-1, -1, -1}, {5, 3, 2}};
     const SizeField f = makeSizeField(soup(), sized(0.1, 0.2), boxed(box));
     EXPECT_EQ(f.lattice.count, (Index3{30, 20, 15}));
-    EXPECT_EQ(f.partLevel, (std::vector<std::int32_t>{1, 1, 1}));
+    EXPECT_EQ(f.partLevel, (std::vector<LevelTriple>{allAxes(1), allAxes(1), allAxes(1)}));
     EXPECT_EQ(f.lattice.origin, box.lo);
     for (int a = 0; a < 3; ++a) EXPECT_DOUBLE_EQ(f.lattice.domain().hi[a], box.hi[a]);
 }
 
 TEST(SizeField, PartsByNameAndPattern) {
     SizeOptions o = sized(0.4, 0.4);
-    o.parts = {{"wheel_.*", 0.1}, {"body", 0.05}, {"ghost", 0.01}};
+    o.parts = {{"wheel_.*", sameSize(0.1)}, {"body", sameSize(0.05)}, {"ghost", sameSize(0.01)}};
     const SizeField f = makeSizeField(soup(), o, boxed({{-1, -1, -1}, {5, 3, 3}}));
-    EXPECT_EQ(f.partLevel, (std::vector<std::int32_t>{2, 2, 3}));
+    EXPECT_EQ(f.partLevel, (std::vector<LevelTriple>{allAxes(2), allAxes(2), allAxes(3)}));
     EXPECT_EQ(f.lattice.maxLevel, 3);
     EXPECT_THAT(f.notes, testing::ElementsAre(testing::HasSubstr("'ghost'")));
 }
@@ -91,12 +91,12 @@ TEST(SizeField, PartsByNameAndPattern) {
 TEST(SizeField, LimitsClampAndSaySo) {
     SizeOptions o = sized(0.4, 0.8);
     o.min = 0.2;
-    o.parts = {{"body", 0.01}};
-    o.boxes = {{{{0, 0, 0}, {1, 1, 1}}, 0.01}};
+    o.parts = {{"body", sameSize(0.01)}};
+    o.boxes = {{{{0, 0, 0}, {1, 1, 1}}, sameSize(0.01)}};
     const SizeField f = makeSizeField(soup(), o, boxed({{-1.6, -1.6, -1.6}, {4.8, 4.8, 4.8}}));
-    EXPECT_EQ(f.partLevel[2], 2); // 0.8 / 4 = 0.2
+    EXPECT_EQ(f.partLevel[2], allAxes(2)); // 0.8 / 4 = 0.2
     ASSERT_EQ(f.boxes.size(), 1u);
-    EXPECT_EQ(f.boxes[0].level, 2);
+    EXPECT_EQ(f.boxes[0].level, allAxes(2));
     EXPECT_DOUBLE_EQ(f.minSize, 0.2);
     EXPECT_THAT(f.notes, testing::ElementsAre(testing::HasSubstr("clamped to 0.2")));
 }

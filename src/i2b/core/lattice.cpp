@@ -2,7 +2,7 @@
 
 namespace i2b {
 
-Index3 Lattice::cellAt(int level, const Vec3& p) const {
+Index3 Lattice::cellAt(const LevelTriple& level, const Vec3& p) const {
     const Vec3 s = cellSize(level);
     const Index3 n = cells(level);
     Index3 c{};

@@ -1,26 +1,15 @@
 #include "i2b/grid/build.h"
 #include "i2b/core/checksum.h"
-#include "i2b/grid/mask_ops.h"
+#include "i2b/grid/resample.h"
+#include "i2b/grid/splits.h"
 #include <fmt/format.h>
 
 namespace i2b {
 
-std::vector<Mask::Ptr> wantedByBoxes(const SizeField& field) {
-    std::vector<Mask::Ptr> wanted;
-    for (int l = 0; l <= field.lattice.maxLevel; ++l) {
-        auto mask = std::make_shared<Mask>(false);
-        for (const LevelBox& rule : field.boxes) {
-            if (rule.level != l || !rule.box.overlaps(field.lattice.domain())) continue;
-            const Index3 lo = field.lattice.cellAt(l, rule.box.lo), hi = field.lattice.cellAt(l, rule.box.hi);
-            mask->denseFill(openvdb::CoordBBox(toCoord(lo), toCoord(hi)), true, true);
-        }
-        mask->voxelizeActiveTiles();
-        wanted.push_back(mask);
-    }
-    return wanted;
-}
+namespace {
 
-CellGrid buildCellGrid(const SizeField& field, const std::vector<Mask::Ptr>& wanted) {
+// All axes together: an octree, one mask a level.
+std::vector<CellLevel> octreeLeaves(const SizeField& field, const std::vector<Mask::Ptr>& wanted) {
     const Lattice& lattice = field.lattice;
     const auto levels = static_cast<std::size_t>(lattice.maxLevel) + 1;
     std::vector<Mask::Ptr> refined(levels); // cells of level l that are split
@@ -29,13 +18,21 @@ CellGrid buildCellGrid(const SizeField& field, const std::vector<Mask::Ptr>& wan
         const Mask::Ptr below = unionOf(*wanted[l + 1], *refined[l + 1]);
         refined[l] = parentsOf(*dilated(*below, field.bufferCells, lattice.cells(static_cast<int>(l) + 1)));
     }
-    CellGrid grid;
-    grid.lattice = lattice;
+    std::vector<CellLevel> leaves;
     for (std::size_t l = 0; l < levels; ++l) {
         const Mask::Ptr all = l == 0 ? filledBox(lattice.count) : childrenOf(*refined[l - 1]);
-        const auto level = static_cast<std::uint8_t>(l);
-        grid.levels.push_back({{level, level, level}, differenceOf(*all, *refined[l])});
+        leaves.push_back({allAxes(static_cast<int>(l)), differenceOf(*all, *refined[l])});
     }
+    return leaves;
+}
+
+} // namespace
+
+CellGrid buildCellGrid(const SizeField& field, const WantedCells& wanted) {
+    CellGrid grid;
+    grid.lattice = field.lattice;
+    grid.levels = wanted.perAxis ? leavesOfSplits(field.lattice, settleSplits(field, wanted))
+                                 : octreeLeaves(field, wanted.axis[0]);
     return grid;
 }
 
@@ -59,22 +56,42 @@ std::uint64_t CellGrid::checksum() const {
     return sum.value();
 }
 
+namespace {
+
+bool farApart(const LevelTriple& a, const LevelTriple& b) {
+    return std::abs(a.x - b.x) > 1 || std::abs(a.y - b.y) > 1 || std::abs(a.z - b.z) > 1;
+}
+
+// True if a cell of one level touches a cell of the other, be it in a corner.
+bool touch(const Lattice& lattice, const CellLevel& a, const CellLevel& b) {
+    const LevelTriple low = coarserOf(a.level, b.level), fine = finerOf(a.level, b.level);
+    const Mask::Ptr place = dilated(*overlapping(*b.cells, b.level, low), 1, lattice.cells(low));
+    const Mask::Ptr near = intersectionOf(*a.cells, *overlapping(*place, low, a.level));
+    const Mask::Ptr around = dilated(*overlapping(*near, a.level, fine), 1, lattice.cells(fine));
+    return sharesVolume(*around, fine, *b.cells, b.level);
+}
+
+std::string nameOf(const LevelTriple& l) {
+    return l.same() ? fmt::format("{}", l.x) : fmt::format("({} {} {})", l.x, l.y, l.z);
+}
+
+} // namespace
+
 std::string CellGrid::validate() const {
-    if (levels.size() != static_cast<std::size_t>(lattice.maxLevel) + 1) return "one mask per level expected";
     double volume = 0, whole = 1;
     for (std::size_t i = 0; i < 3; ++i) whole *= lattice.count[i];
-    for (std::size_t l = 0; l < levels.size(); ++l) {
-        volume += std::ldexp(static_cast<double>(countOf(*levels[l].cells)), -3 * static_cast<int>(l));
-        if (levels[l].cells->hasActiveTiles()) return fmt::format("active tile at level {}", l);
-        if (l == 0) continue;
-        // Cells beside a finer one, or an ancestor of one, must have ancestors' neighbours: no leaf two levels up.
-        const Mask::Ptr parents = parentsOf(*levels[l].cells);
-        if (countOf(*intersectionOf(*parents, *levels[l - 1].cells)) != 0) return fmt::format("levels {} and {} overlap", l - 1, l);
-        if (l < 2) continue;
-        const Mask::Ptr around = dilated(*levels[l].cells, 1, lattice.cells(static_cast<int>(l)));
-        const Mask::Ptr grand = parentsOf(*parentsOf(*around));
-        if (countOf(*intersectionOf(*grand, *levels[l - 2].cells)) != 0) {
-            return fmt::format("a cell of level {} touches one of level {}", l, l - 2);
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+        const auto& [level, cells] = levels[k];
+        volume += std::ldexp(static_cast<double>(countOf(*cells)), -(level.x + level.y + level.z));
+        if (cells->hasActiveTiles()) return fmt::format("active tile at level {}", nameOf(level));
+        if (level.finest() > lattice.maxLevel) return fmt::format("level {} is beyond the lattice's", nameOf(level));
+        for (std::size_t m = 0; m < k; ++m) {
+            if (sharesVolume(*cells, level, *levels[m].cells, levels[m].level)) {
+                return fmt::format("levels {} and {} overlap", nameOf(level), nameOf(levels[m].level));
+            }
+            if (farApart(level, levels[m].level) && touch(lattice, levels[m], levels[k])) {
+                return fmt::format("a cell of level {} touches one of level {}", nameOf(level), nameOf(levels[m].level));
+            }
         }
     }
     if (volume != whole) return fmt::format("cells cover {} of {} base cells", volume, whole);

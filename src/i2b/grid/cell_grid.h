@@ -1,4 +1,4 @@
-// The adaptive Cartesian grid as sparse VDB topology: one mask tree of leaf cells per level. A tree node of 8x8x8
+// The adaptive Cartesian grid as sparse VDB topology: one mask tree of leaf cells per level triple. A tree node of 8x8x8
 // cells is 64 bytes, so every operation here works on 64 cells a word.
 #pragma once
 #include "i2b/core/lattice.h"
@@ -17,10 +17,11 @@ struct CellLevel {
 };
 
 // Invariants: leaf cells of all levels are disjoint and cover the domain box; cells that share a face, an edge or a
-// corner differ by at most one level; levels[l].level == (l, l, l) as long as the axes split together.
+// corner differ by at most one level on each axis. Where all axes split together levels[l].level is (l, l, l) for
+// every l; else the levels in use, by their finest axis, then in order. "Level k" of a cell is an index into this list.
 struct CellGrid {
     Lattice lattice;
-    std::vector<CellLevel> levels; // by level, coarse to fine
+    std::vector<CellLevel> levels; // coarse to fine
 
     std::uint64_t cellCount() const;
     std::string validate() const;

@@ -11,7 +11,7 @@ using MaskWriter = openvdb::tree::ValueAccessor<Mask>;
 
 // A triangle in the coordinates of one level (cell edge 1), and the cells that its box spans there.
 struct LevelTriangle {
-    LevelTriangle(const Surface& surface, std::size_t t, const Lattice& lattice, int level) {
+    LevelTriangle(const Surface& surface, std::size_t t, const Lattice& lattice, const LevelTriple& level) {
         const Vec3 s = lattice.cellSize(level);
         for (std::size_t i = 0; i < 3; ++i) {
             const Vec3 d = surface.points[surface.triangles[t][i]] - lattice.origin;
@@ -53,7 +53,7 @@ void visitCells(const TriangleBoxTest& test, const Index3& lo, const Index3& hi,
 }
 
 template <class Mark>
-void visitTriangle(const Surface& surface, std::size_t t, const Lattice& lattice, int level, const Mark& mark) {
+void visitTriangle(const Surface& surface, std::size_t t, const Lattice& lattice, const LevelTriple& level, const Mark& mark) {
     const LevelTriangle triangle(surface, t, lattice, level);
     if (triangle.empty) return;
     const TriangleBoxTest test(triangle.corner[0], triangle.corner[1], triangle.corner[2]);
@@ -98,33 +98,40 @@ std::vector<Mask::Ptr> collect(std::size_t triangles, std::size_t levels, const 
 
 } // namespace
 
-std::vector<Mask::Ptr> cutAtTargetLevels(const Surface& surface, const SizeField& field) {
-    const auto levels = static_cast<std::size_t>(field.lattice.maxLevel) + 1;
-    return collect(surface.triangles.size(), levels, [&](std::size_t t, LevelMasks& masks) {
-        const int level = field.partLevel[static_cast<std::size_t>(surface.partOf[t])];
-        visitTriangle(surface, t, field.lattice, level,
-                      [&](const Index3& c) { masks.set(static_cast<std::size_t>(level), c); });
+std::vector<CellLevel> cutAtTargetLevels(const Surface& surface, const SizeField& field) {
+    const std::vector<LevelTriple> targets = field.targets();
+    const std::vector<Mask::Ptr> masks = collect(surface.triangles.size(), targets.size(), [&](std::size_t t, LevelMasks& out) {
+        const LevelTriple level = field.target(surface, t);
+        const auto slot = static_cast<std::size_t>(std::lower_bound(targets.begin(), targets.end(), level) - targets.begin());
+        visitTriangle(surface, t, field.lattice, level, [&](const Index3& c) { out.set(slot, c); });
     });
+    std::vector<CellLevel> cut;
+    for (std::size_t i = 0; i < targets.size(); ++i) cut.push_back({targets[i], masks[i]});
+    return cut;
 }
 
 CutCells cutLeafCells(const Surface& surface, const SizeField& field, const CellGrid& grid,
-                      const std::vector<Mask::Ptr>& atTarget) {
+                      const std::vector<CellLevel>& atTarget) {
     const std::size_t levels = grid.levels.size();
     CutCells cut;
-    for (std::size_t l = 0; l < levels; ++l) {
-        cut.levels.push_back(intersectionOf(*atTarget[l], *grid.levels[l].cells));
+    for (const CellLevel& level : grid.levels) {
+        const auto same = std::find_if(atTarget.begin(), atTarget.end(), [&](const CellLevel& c) { return c.level == level.level; });
+        cut.levels.push_back(same == atTarget.end() ? std::make_shared<Mask>(false) : intersectionOf(*same->cells, *level.cells));
     }
-    // Where the place was refined beyond a triangle's level, look at it again on the levels below.
+    // Where the place was refined beyond a triangle's level, look at it again on the finer levels.
     const std::vector<Mask::Ptr> finer = collect(surface.triangles.size(), levels, [&](std::size_t t, LevelMasks& masks) {
-        const auto start = static_cast<std::size_t>(field.partLevel[static_cast<std::size_t>(surface.partOf[t])]);
-        bool refined = false;
-        if (start + 1 == levels) return;
-        MaskReader leaf(*grid.levels[start].cells);
-        visitTriangle(surface, t, field.lattice, static_cast<int>(start),
-                      [&](const Index3& c) { refined = refined || !leaf.isValueOn(toCoord(c)); });
-        for (std::size_t l = start + 1; refined && l < levels; ++l) {
+        const LevelTriple start = field.target(surface, t);
+        const auto own = std::find_if(grid.levels.begin(), grid.levels.end(), [&](const CellLevel& c) { return c.level == start; });
+        bool refined = own == grid.levels.end();
+        if (!refined) {
+            MaskReader leaf(*own->cells);
+            visitTriangle(surface, t, field.lattice, start, [&](const Index3& c) { refined = refined || !leaf.isValueOn(toCoord(c)); });
+        }
+        for (std::size_t l = 0; refined && l < levels; ++l) {
+            const LevelTriple& level = grid.levels[l].level;
+            if (level == start || finerOf(level, start) != level) continue;
             MaskReader here(*grid.levels[l].cells);
-            visitTriangle(surface, t, field.lattice, static_cast<int>(l), [&](const Index3& c) {
+            visitTriangle(surface, t, field.lattice, level, [&](const Index3& c) {
                 if (here.isValueOn(toCoord(c))) masks.set(l, c);
             });
         }

@@ -7,12 +7,13 @@
 
 namespace i2b {
 
-// By level: the cells of that level which triangles with that target level meet, whether they exist yet or not.
-std::vector<Mask::Ptr> cutAtTargetLevels(const Surface& surface, const SizeField& field);
+// By target level, coarse to fine: the cells of that level which triangles with that target meet, whether they exist
+// yet or not. Every target level of the field has an entry.
+std::vector<CellLevel> cutAtTargetLevels(const Surface& surface, const SizeField& field);
 
 // The leaf cells of the grid that any triangle meets. atTarget is what cutAtTargetLevels() gave for the same input;
 // only triangles whose place was refined beyond their own level are looked at again.
 CutCells cutLeafCells(const Surface& surface, const SizeField& field, const CellGrid& grid,
-                      const std::vector<Mask::Ptr>& atTarget);
+                      const std::vector<CellLevel>& atTarget);
 
 } // namespace i2b

@@ -52,6 +52,8 @@ Mask::Ptr intersectionOf(const Mask& a, const Mask& b);
 // Grown by n cells in all 26 directions, within [0, size).
 Mask::Ptr dilated(const Mask& cells, int n, const Index3& size);
 std::uint64_t countOf(const Mask& mask);
+// No cells; Mask::empty() asks for no nodes either, which remain where leaves were pruned.
+inline bool isEmpty(const Mask& mask) { return !mask.cbeginLeaf(); }
 void addTo(class Checksum& sum, const Mask& mask);
 
 } // namespace i2b

@@ -45,6 +45,8 @@ struct Value {
         const auto v = numbers<3>(at);
         return {v[0], v[1], v[2]};
     }
+    // One number for all axes, or one for each.
+    Vec3 size(const toml::node& at) const { return at.is_array() ? point(at) : sameSize(number(at)); }
     Box box(const toml::node& at) const {
         const auto v = numbers<6>(at);
         return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
@@ -91,14 +93,14 @@ void read(const Value& v, std::vector<PartSize>& field) {
     field.clear();
     for (const toml::node& item : v.list()) {
         const auto entries = v.entries(item, {"part", "size"});
-        field.push_back({v.text(*entries[0]), v.number(*entries[1])});
+        field.push_back({v.text(*entries[0]), v.size(*entries[1])});
     }
 }
 void read(const Value& v, std::vector<BoxSize>& field) {
     field.clear();
     for (const toml::node& item : v.list()) {
         const auto entries = v.entries(item, {"box", "size"});
-        field.push_back({v.box(*entries[0]), v.number(*entries[1])});
+        field.push_back({v.box(*entries[0]), v.size(*entries[1])});
     }
 }
 void read(const Value& v, std::vector<Seed>& field) {
@@ -154,10 +156,13 @@ std::string show(const Vec3& p) { return fmt::format("[{}, {}, {}]", p.x, p.y, p
 std::string show(const Box& b) {
     return fmt::format("[{}, {}, {}, {}, {}, {}]", b.lo.x, b.lo.y, b.lo.z, b.hi.x, b.hi.y, b.hi.z);
 }
+std::string showSize(const Vec3& s) { return s == sameSize(s.x) ? show(s.x) : show(s); }
 std::string show(const PartSize& p) {
-    return fmt::format("{{ part = {}, size = {} }}", quoted(p.part), p.size);
+    return fmt::format("{{ part = {}, size = {} }}", quoted(p.part), showSize(p.size));
 }
-std::string show(const BoxSize& b) { return fmt::format("{{ box = {}, size = {} }}", show(b.box), b.size); }
+std::string show(const BoxSize& b) {
+    return fmt::format("{{ box = {}, size = {} }}", show(b.box), showSize(b.size));
+}
 std::string show(const Seed& s) {
     return fmt::format("{{ name = {}, place = {} }}", quoted(s.name), show(s.place));
 }

@@ -87,12 +87,12 @@ Edit toEdit(const Setting& setting, const std::string& text) {
         Edit operator()(FieldOf<std::vector<PartSize>> f) const {
             const std::size_t equals = text.rfind('=');
             if (equals == std::string::npos) refuse(option, "a size is missing", "write PART=D");
-            const PartSize value{text.substr(0, equals), toNumber(option, text.substr(equals + 1))};
+            const PartSize value{text.substr(0, equals), sameSize(toNumber(option, text.substr(equals + 1)))};
             return [=](Case& c) { f(c).push_back(value); };
         }
         Edit operator()(FieldOf<std::vector<BoxSize>> f) const {
             const auto v = toNumbers(option, text, 7);
-            return [=](Case& c) { f(c).push_back({toBox(v), v[6]}); };
+            return [=](Case& c) { f(c).push_back({toBox(v), sameSize(v[6])}); };
         }
         Edit operator()(FieldOf<std::vector<Seed>> f) const {
             const std::size_t equals = text.find('=');

@@ -8,7 +8,6 @@
 #include "i2b/front/front.h"
 #include "i2b/grid/build.h"
 #include "i2b/grid/cut.h"
-#include "i2b/grid/mask_ops.h"
 #include "i2b/layers/layer_stack.h"
 #include "i2b/paint/paint.h"
 #include "i2b/quality/repair.h"
@@ -55,20 +54,15 @@ std::unique_ptr<GridResult> generateGrid(const Options& options, Context& contex
     r.index = stage(
         context, "index", [&] { return std::make_unique<SurfaceIndex>(r.surface); },
         [&](const auto&) { return r.surface.triangles.size(); });
-    std::vector<Mask::Ptr> wanted;
     r.grid = stage(
         context, "grid",
         [&] {
-            std::vector<Mask::Ptr> atTarget = cutAtTargetLevels(r.surface, r.field);
-            const std::vector<Mask::Ptr> boxes = wantedByBoxes(r.field);
-            for (std::size_t l = 0; l < boxes.size(); ++l)
-                wanted.push_back(boxes[l]->empty() ? atTarget[l] : unionOf(*atTarget[l], *boxes[l]));
-            CellGrid grid = buildCellGrid(r.field, wanted);
+            const std::vector<CellLevel> atTarget = cutAtTargetLevels(r.surface, r.field);
+            CellGrid grid = buildCellGrid(r.field, wantedCells(r.field, atTarget));
             r.cut = cutLeafCells(r.surface, r.field, grid, atTarget);
             return grid;
         },
         [](const CellGrid& g) { return g.cellCount(); });
-    wanted.clear();
     r.regions = stage(
         context, "paint",
         [&] {

@@ -40,13 +40,16 @@ void checkGeometry(const GeometryOptions& geometry, Checker& check) {
     check.within("feature-angle", geometry.featureAngle, 0, 180);
 }
 
+bool isSize(const Vec3& size) { return isFinite(size) && size.x > 0 && size.y > 0 && size.z > 0; }
+double smallest(const Vec3& size) { return std::min(size.x, std::min(size.y, size.z)); }
+
 void checkPartSize(const PartSize& part, const SizeOptions& size, Checker& check) {
-    if (!(part.size > 0 && std::isfinite(part.size)))
-        check.add("part-size", fmt::format("the size of part '{}' is {} m", part.part, part.size),
+    if (!isSize(part.size))
+        check.add("part-size", fmt::format("the size of part '{}' is {} m", part.part, smallest(part.size)),
                   "give a positive length in metres");
-    else if (part.size < size.min)
+    else if (smallest(part.size) < size.min)
         check.add("part-size",
-                  fmt::format("the size of part '{}', {} m, is below min-size", part.part, part.size),
+                  fmt::format("the size of part '{}', {} m, is below min-size", part.part, smallest(part.size)),
                   fmt::format("give at least {} m or lower min-size", size.min));
     try {
         std::regex(part.part, std::regex::ECMAScript);
@@ -75,8 +78,8 @@ void checkSizes(const SizeOptions& size, Checker& check) {
     for (const BoxSize& box : size.boxes) {
         if (!hasVolume(box.box))
             check.add("box-size", "the box has no volume", "give the lower corner first");
-        if (!(box.size > 0 && std::isfinite(box.size)))
-            check.add("box-size", fmt::format("the size inside is {} m", box.size),
+        if (!isSize(box.size))
+            check.add("box-size", fmt::format("the size inside is {} m", smallest(box.size)),
                       "give a positive length in metres");
     }
     check.within("buffer-cells", size.bufferCells, 1, 64);

@@ -36,15 +36,28 @@ Flow resolvedFlow(const DomainOptions& domain) {
     return domain.seeds.empty() ? Flow::external : Flow::internal;
 }
 
-int levelFor(const Vec3& base, double size) {
-    const double widest = std::max(base.x, std::max(base.y, base.z));
+int axisLevel(double base, double size) {
     int level = 0;
-    while (std::ldexp(widest, -level) > size * (1 + slack)) {
+    while (std::ldexp(base, -level) > size * (1 + slack)) {
         if (++level <= highestLevel) continue;
-        throw Error(ErrorKind::input, fmt::format("cells of {:g} m are too small for a largest cell of {:g} m", size, widest),
+        throw Error(ErrorKind::input, fmt::format("cells of {:g} m are too small for a largest cell of {:g} m", size, base),
                     fmt::format("more than {} levels", highestLevel), "give a larger --size or a smaller --max-size");
     }
     return level;
+}
+
+// One size for all axes gives one level: base cells are cubes as nearly as the domain allows.
+LevelTriple levelFor(const Vec3& base, const Vec3& size) {
+    if (size.x == size.y && size.y == size.z) return allAxes(axisLevel(std::max(base.x, std::max(base.y, base.z)), size.x));
+    LevelTriple level;
+    for (std::size_t i = 0; i < 3; ++i) {
+        level[i] = static_cast<std::uint8_t>(axisLevel(base[static_cast<int>(i)], size[static_cast<int>(i)]));
+    }
+    return level;
+}
+
+Vec3 clamped(const Vec3& size, double lo, double hi) {
+    return {std::clamp(size.x, lo, hi), std::clamp(size.y, lo, hi), std::clamp(size.z, lo, hi)};
 }
 
 Box meshedBounds(const Surface& surface) {
@@ -75,9 +88,9 @@ void applyPartSizes(SizeField& field, const Surface& surface, const SizeOptions&
     for (const PartSize& rule : size.parts) {
         bool used = false;
         const std::regex pattern(rule.part);
-        const double asked = std::clamp(rule.size, smallest, field.maxSize);
+        const Vec3 asked = clamped(rule.size, smallest, field.maxSize);
         if (asked != rule.size) {
-            field.notes.push_back(fmt::format("size {:g} m of part '{}' clamped to {:g} m", rule.size, rule.part, asked));
+            field.notes.push_back(fmt::format("size {:g} m of part '{}' clamped to {:g} m", rule.size.x, rule.part, asked.x));
         }
         for (std::size_t p = 0; p < surface.parts.size(); ++p) {
             if (surface.parts[p].name != rule.part && !std::regex_match(surface.parts[p].name, pattern)) continue;
@@ -115,13 +128,13 @@ SizeField makeSizeField(const Surface& surface, const SizeOptions& size, const D
     field.surfaceSize = size.surface;
     field.maxSize = maxSize;
     const double smallest = size.min > 0 ? size.min : 0;
-    field.partLevel.assign(surface.parts.size(), levelFor(field.lattice.base, size.surface));
+    field.partLevel.assign(surface.parts.size(), levelFor(field.lattice.base, sameSize(size.surface)));
     applyPartSizes(field, surface, size, smallest);
     for (const BoxSize& rule : size.boxes) {
-        field.boxes.push_back({rule.box, levelFor(field.lattice.base, std::clamp(rule.size, smallest, maxSize))});
+        field.boxes.push_back({rule.box, levelFor(field.lattice.base, clamped(rule.size, smallest, maxSize))});
     }
-    for (std::int32_t level : field.partLevel) field.lattice.maxLevel = std::max(field.lattice.maxLevel, level);
-    for (const LevelBox& rule : field.boxes) field.lattice.maxLevel = std::max(field.lattice.maxLevel, rule.level);
+    for (const LevelTriple& level : field.partLevel) field.lattice.maxLevel = std::max(field.lattice.maxLevel, level.finest());
+    for (const LevelBox& rule : field.boxes) field.lattice.maxLevel = std::max(field.lattice.maxLevel, rule.level.finest());
     field.minSize = field.lattice.h(field.lattice.maxLevel);
     for (std::int32_t n : field.lattice.count) {
         if (std::ldexp(n, field.lattice.maxLevel) > double(1 << 30)) {
@@ -132,13 +145,20 @@ SizeField makeSizeField(const Surface& surface, const SizeOptions& size, const D
     return field;
 }
 
+std::vector<LevelTriple> SizeField::targets() const {
+    std::vector<LevelTriple> all = triangleLevel.empty() ? partLevel : triangleLevel;
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
+}
+
 std::string SizeField::validate() const {
     for (int i = 0; i < 3; ++i) {
         if (!(lattice.base[i] > 0)) return "base cell without extent";
         if (lattice.count[static_cast<std::size_t>(i)] < 1) return "no base cells";
     }
-    for (std::int32_t level : partLevel) {
-        if (level < 0 || level > lattice.maxLevel) return "part level out of range";
+    for (const LevelTriple& level : partLevel) {
+        if (level.finest() > lattice.maxLevel) return "part level out of range";
     }
     return "";
 }

@@ -12,17 +12,22 @@ namespace i2b {
 
 struct LevelBox {
     Box box;           // m
-    std::int32_t level = 0;
+    LevelTriple level;
 };
 
 struct SizeField {
     Lattice lattice;
-    std::vector<std::int32_t> partLevel; // per part: level of the cells that it meets
+    std::vector<LevelTriple> partLevel;  // per part: level of the cells that it meets
+    std::vector<LevelTriple> triangleLevel; // per triangle, at least its part's; empty: the parts' alone
     std::vector<LevelBox> boxes;         // refinement boxes
     int bufferCells = 3;
     double surfaceSize = 0, minSize = 0, maxSize = 0; // m: asked d_int, smallest and largest cell edge that result
     std::vector<std::string> notes;      // what was clamped
 
+    LevelTriple target(const Surface& surface, std::size_t triangle) const {
+        return triangleLevel.empty() ? partLevel[static_cast<std::size_t>(surface.partOf[triangle])] : triangleLevel[triangle];
+    }
+    std::vector<LevelTriple> targets() const; // of all triangles, each once, ascending
     std::string validate() const;
 };
 
