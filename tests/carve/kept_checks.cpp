@@ -31,9 +31,9 @@ class Vertices {
         for (int o = 0; o < 8; ++o) {
             const int c = around(v, o);
             if (c < 0) continue;
-            const int s = array_.span(c);
-            if (v[0] % s == 0 && v[1] % s == 0 && v[2] % s == 0)
-                best = std::max(best, array_.cells[static_cast<std::size_t>(c)].level);
+            const Index3 s = array_.span(c);
+            if (v[0] % s[0] == 0 && v[1] % s[1] == 0 && v[2] % s[2] == 0)
+                best = std::max(best, array_.cells[static_cast<std::size_t>(c)].triple.finest());
         }
         return best;
     }
@@ -111,13 +111,13 @@ Painted::Painted(const RandomCase& c) : soup(c.soup), index(std::make_unique<Sur
     chooseRegions(regions, grid, cut, c.options.domain);
 }
 
-CarvedAtRandom::CarvedAtRandom(unsigned seed, const Index3& count, int levels, int buffer, double closed) {
+CarvedAtRandom::CarvedAtRandom(unsigned seed, const Index3& count, int levels, int buffer, double closed, bool perAxis) {
     far.points = {{1e3, 1e3, 1e3}, {1e3, 1001, 1e3}, {1e3, 1e3, 1001}};
     far.triangles = {{0, 1, 2}};
     far.partOf = {0};
     far.parts = {{"far", "", 1}};
     index = std::make_unique<SurfaceIndex>(far);
-    grid = randomGrid(seed, count, levels, buffer);
+    grid = randomGrid(seed, count, levels, buffer, perAxis);
     const CutCells cut = randomCut(grid, seed + 1000, closed);
     regions = labelRegions(grid, cut);
     const auto largest =

@@ -31,7 +31,7 @@ struct Painted {
 // Random walls instead of a geometry, the largest region kept and carved; the geometry is one triangle far
 // away.
 struct CarvedAtRandom {
-    CarvedAtRandom(unsigned seed, const Index3& count, int levels, int buffer, double closed);
+    CarvedAtRandom(unsigned seed, const Index3& count, int levels, int buffer, double closed, bool perAxis = false);
     Surface far;
     std::unique_ptr<SurfaceIndex> index;
     CellGrid grid;

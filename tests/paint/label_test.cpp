@@ -12,13 +12,14 @@ struct Case {
     Index3 count;
     int levels, buffer;
     double closed; // share of the cells
+    bool perAxis = false;
 };
 
 class Label : public testing::TestWithParam<Case> {};
 
 TEST_P(Label, EqualsAPlainFlood) {
-    const auto [seed, count, levels, buffer, closed] = GetParam();
-    const CellGrid grid = randomGrid(seed, count, levels, buffer);
+    const auto [seed, count, levels, buffer, closed, perAxis] = GetParam();
+    const CellGrid grid = randomGrid(seed, count, levels, buffer, perAxis);
     ASSERT_EQ(grid.validate(), "");
     const CutCells cut = randomCut(grid, seed + 100, closed);
     const Regions regions = labelRegions(grid, cut);
@@ -46,7 +47,7 @@ TEST_P(Label, EqualsAPlainFlood) {
         bool first = true;
         for (std::size_t i = 0; i < array.cells.size(); ++i) {
             if (label[i] != r.id) continue;
-            const Box box = grid.lattice.cellBox(array.cells[i].level, array.cells[i].at);
+            const Box box = grid.lattice.cellBox(array.cells[i].triple, array.cells[i].at);
             if (std::exchange(first, false)) brute.seed = box.centre();
             const Vec3 e = box.extent();
             ++brute.cells;
@@ -68,8 +69,8 @@ TEST_P(Label, EqualsAPlainFlood) {
 }
 
 TEST_P(Label, IsTheSameOnAnyNumberOfThreads) {
-    const auto [seed, count, levels, buffer, closed] = GetParam();
-    const CellGrid grid = randomGrid(seed, count, levels, buffer);
+    const auto [seed, count, levels, buffer, closed, perAxis] = GetParam();
+    const CellGrid grid = randomGrid(seed, count, levels, buffer, perAxis);
     const CutCells cut = randomCut(grid, seed + 100, closed);
     const std::uint64_t expected = labelRegions(grid, cut).checksum();
     for (std::size_t threads : {1, 2, 3, 8}) {
@@ -83,7 +84,9 @@ INSTANTIATE_TEST_SUITE_P(Random, Label,
                                          Case{3, {17, 18, 5}, 2, 3, 0.65}, Case{4, {20, 20, 20}, 1, 1, 0.68},
                                          Case{5, {3, 4, 5}, 4, 1, 0.6}, Case{6, {6, 6, 6}, 4, 1, 0.75},
                                          Case{7, {1, 1, 9}, 3, 1, 0.4}, Case{8, {8, 8, 8}, 2, 1, 0.0},
-                                         Case{9, {8, 8, 8}, 2, 1, 1.0}));
+                                         Case{9, {8, 8, 8}, 2, 1, 1.0},
+                                         Case{10, {9, 7, 11}, 3, 1, 0.5, true}, Case{11, {5, 6, 4}, 4, 1, 0.6, true},
+                                         Case{12, {3, 4, 5}, 4, 2, 0.5, true}, Case{13, {8, 3, 4}, 3, 1, 0.0, true}));
 
 } // namespace
 } // namespace i2b::test

@@ -8,8 +8,8 @@
 
 namespace i2b::test {
 
-// Wanted cells at random places of random levels; levels - 1 is the finest.
-inline CellGrid randomGrid(unsigned seed, const Index3& count, int levels, int buffer) {
+// Wanted cells at random places of random levels; levels - 1 is the finest. perAxis: each axis wants its own.
+inline CellGrid randomGrid(unsigned seed, const Index3& count, int levels, int buffer, bool perAxis = false) {
     std::mt19937 random(seed);
     SizeField field;
     field.lattice.origin = {-1, 2, 0.5};
@@ -18,22 +18,27 @@ inline CellGrid randomGrid(unsigned seed, const Index3& count, int levels, int b
     field.lattice.maxLevel = levels - 1;
     field.bufferCells = buffer;
     WantedCells wanted;
-    for (int l = 0; l < levels; ++l) {
-        auto mask = std::make_shared<Mask>(false);
-        const Index3 n = field.lattice.cells(l);
-        for (int i = 0; i < 2 && l > 0; ++i) {
-            Index3 c{};
-            for (std::size_t a = 0; a < 3; ++a)
-                c[a] = static_cast<std::int32_t>(random() % static_cast<unsigned>(n[a]));
-            mask->setValueOn(toCoord(c));
+    wanted.perAxis = perAxis;
+    for (std::size_t axis = 0; axis < (perAxis ? 3u : 1u); ++axis) {
+        for (int l = 0; l < levels; ++l) {
+            auto mask = std::make_shared<Mask>(false);
+            const Index3 n = field.lattice.cells(l);
+            for (int i = 0; i < 2 && l > 0; ++i) {
+                Index3 c{};
+                for (std::size_t a = 0; a < 3; ++a)
+                    c[a] = static_cast<std::int32_t>(random() % static_cast<unsigned>(n[a]));
+                mask->setValueOn(toCoord(c));
+            }
+            wanted.axis[axis].push_back(mask);
         }
-        for (auto& axis : wanted.axis) axis.push_back(mask);
     }
+    if (!perAxis) wanted.axis[1] = wanted.axis[2] = wanted.axis[0];
     return buildCellGrid(field, wanted);
 }
 
 struct GridCell {
-    int level = 0;
+    int level = 0; // index into CellGrid::levels
+    LevelTriple triple;
     Index3 at{};
 };
 
@@ -49,22 +54,21 @@ class CellArray {
         for (std::size_t l = 0; l < grid.levels.size(); ++l) {
             for (const MaskLeaf* leaf : leavesOf(static_cast<const Mask&>(*grid.levels[l].cells))) {
                 for (auto it = leaf->cbeginValueOn(); it; ++it) {
-                    const Index3 c = toIndex(it.getCoord());
-                    const int span = 1 << (lattice.maxLevel - static_cast<int>(l));
-                    for (int i = 0; i < span * span * span; ++i) {
-                        cell_[offset({c[0] * span + i % span, c[1] * span + i / span % span,
-                                      c[2] * span + i / span / span})] = static_cast<int>(cells.size());
-                    }
-                    cells.push_back({static_cast<int>(l), c});
+                    cells.push_back({static_cast<int>(l), grid.levels[l].level, toIndex(it.getCoord())});
+                    fill(static_cast<int>(cells.size()) - 1);
                 }
             }
         }
+    }
+    // Finest cells along each edge of a cell.
+    Index3 span(int cell) const {
+        const LevelTriple& l = cells[static_cast<std::size_t>(cell)].triple;
+        return {1 << (lattice.maxLevel - l.x), 1 << (lattice.maxLevel - l.y), 1 << (lattice.maxLevel - l.z)};
     }
     bool inside(const Index3& p) const {
         return p[0] >= 0 && p[1] >= 0 && p[2] >= 0 && p[0] < size[0] && p[1] < size[1] && p[2] < size[2];
     }
     int at(const Index3& p) const { return inside(p) ? cell_[offset(p)] : -1; }
-    int span(int cell) const { return 1 << (lattice.maxLevel - cells[static_cast<std::size_t>(cell)].level); }
 
     std::vector<bool> flagged(const std::vector<Mask::Ptr>& masks) const {
         std::vector<bool> flags(cells.size());
@@ -112,6 +116,12 @@ class CellArray {
     std::vector<GridCell> cells;
 
   private:
+    void fill(int cell) {
+        const Index3 s = span(cell), &c = cells[static_cast<std::size_t>(cell)].at;
+        for (int i = 0; i < s[0] * s[1] * s[2]; ++i) {
+            cell_[offset({c[0] * s[0] + i % s[0], c[1] * s[1] + i / s[0] % s[1], c[2] * s[2] + i / s[0] / s[1]})] = cell;
+        }
+    }
     std::size_t offset(const Index3& p) const {
         return (static_cast<std::size_t>(p[0]) * static_cast<std::size_t>(size[1]) +
                 static_cast<std::size_t>(p[1])) *

@@ -10,12 +10,6 @@
 namespace i2b {
 namespace {
 
-struct Place { // a cell or a vertex
-    std::int32_t level = 0;
-    Index3 at{};
-    friend auto operator<=>(const Place&, const Place&) = default;
-};
-
 void sortUnique(std::vector<Place>& places) {
     std::sort(places.begin(), places.end());
     places.erase(std::unique(places.begin(), places.end()), places.end());
@@ -52,19 +46,28 @@ void removeCells(std::vector<Mask::Ptr>& kept, const std::vector<Place>& cells) 
     for (const Place& cell : cells) kept[std::size_t(cell.level)]->setValueOff(toCoord(cell.at));
 }
 
+// Points of a level's lattice on cut cells: all of its vertices there and some more.
+Mask::Ptr pointsOnCuts(const CellGrid& grid, const CutCells& cut, int level) {
+    auto points = std::make_shared<Mask>(false);
+    for (std::size_t k = 0; k < cut.levels.size(); ++k) {
+        const LevelTriple& own = grid.levels[k].level;
+        const int finest = own.finest();
+        // A vertex on a finer cell is its corner, and on that cell's level, unless it hangs on a long edge.
+        if (std::abs(finest - level) > 1 || (finest > level && own.same()) || isEmpty(*cut.levels[k])) continue;
+        points->topologyUnion(*cornersOf(*overlapping(*cut.levels[k], own, allAxes(level))));
+    }
+    return points;
+}
+
 // Cells with a vertex closer to the geometry than clearance * h. Such a vertex touches a cut cell.
 std::vector<Place> tooClose(const CellGrid& grid, const CutCells& cut, const std::vector<Mask::Ptr>& kept,
                             const SurfaceIndex& index, double clearance) {
     std::vector<Mask::Ptr> near = activeVertices(grid, kept);
-    for (std::size_t l = 0; l < near.size(); ++l) {
-        Mask::Ptr walls = cornersOf(*cut.levels[l]);
-        if (l > 0) walls->topologyUnion(*cornersOf(*childrenOf(*cut.levels[l - 1])));
-        near[l] = intersectionOf(*near[l], *walls);
-    }
+    for (std::size_t l = 0; l < near.size(); ++l) near[l] = intersectionOf(*near[l], *pointsOnCuts(grid, cut, static_cast<int>(l)));
     return collect(placesOf(near), grid, kept, [&](const Place& v, VertexLookup& lookup, std::vector<Place>& out) {
         const double radius = clearance * grid.lattice.h(v.level);
         if (!index.closest(grid.lattice.corner(v.level, v.at), radius)) return;
-        for (const Octant& o : lookup.view(v.level, v.at).octants) {
+        for (const Octant& o : lookup.view(v).octants) {
             if (o.kept) out.push_back({o.level, o.cell});
         }
     });
@@ -79,10 +82,29 @@ void pickNearest(const VertexView& view, const CellGrid& grid, const SurfaceInde
     for (int o = 0; o < 8; ++o) {
         const Octant& octant = view.octants[std::size_t(o)];
         if (!octant.kept || octant.level < 0 || !take(o)) continue;
-        const double d = index.closest(grid.lattice.cellBox(octant.level, octant.cell).centre()).distance;
+        const double d = index.closest(grid.lattice.cellBox(grid.levels[std::size_t(octant.level)].level, octant.cell).centre()).distance;
         if (d < best) best = d, choice = o;
     }
     if (choice >= 0) out.push_back({view.octants[std::size_t(choice)].level, view.octants[std::size_t(choice)].cell});
+}
+
+// Where the lattice edge that leaves a vertex ends: at the nearest far end of the cells around it, each of which has
+// it for an edge, since kept and removed ones alternate.
+FinePoint endOfEdge(const Place& v, const VertexView& view, std::size_t axis, int side, const CellGrid& grid,
+                    const VertexLookup& lookup) {
+    const FinePoint start = lookup.fine(v);
+    std::int64_t length = std::numeric_limits<std::int64_t>::max();
+    for (int o = 0; o < 8; ++o) {
+        const Octant& octant = view.octants[std::size_t(o)];
+        if ((o >> axis & 1) != side || octant.level < 0) continue;
+        Index3 far = octant.cell;
+        far[axis] += side;
+        const FinePoint end = lookup.fine(grid.levels[std::size_t(octant.level)].level, far);
+        length = std::min(length, std::abs(end[axis] - start[axis]));
+    }
+    FinePoint end = start;
+    end[axis] += side ? length : -length;
+    return end;
 }
 
 // An edge at which kept and removed cells alternate must come apart in the same way at both of its ends.
@@ -91,18 +113,9 @@ void judgeEdges(const Place& v, const VertexView& view, const VertexPattern& pat
     for (int e = 0; e < 6; ++e) {
         const int axis = e >> 1, side = e & 1;
         if (pattern.edge[std::size_t(e)] == Alternation::none || view.outside >> e & 1) continue;
-        Place end = v;
-        end.at[std::size_t(axis)] += side ? 1 : -1;
-        if (!lookup.isCorner(v.level, end.at)) { // only coarser cells around: the edge is twice as long
-            end.at[std::size_t(axis)] += side ? 1 : -1;
-            // Cells there may be coarser still, and would be overlooked from this level.
-            if (!lookup.isCorner(end.level, end.at)) end = {end.level - 1, {end.at[0] / 2, end.at[1] / 2, end.at[2] / 2}};
-        }
-        // The vertex there may belong to the next finer level.
-        const int last = static_cast<int>(grid.levels.size()) - 1;
-        const Index3 fine{2 * end.at[0], 2 * end.at[1], 2 * end.at[2]};
-        if (end.level < last && lookup.isCorner(end.level + 1, fine)) end = {end.level + 1, fine};
-        const VertexPattern& other = vertexPattern(lookup.view(end.level, end.at).kept);
+        const std::optional<Place> end = lookup.vertexAt(endOfEdge(v, view, std::size_t(axis), side, grid, lookup));
+        if (!end) continue;
+        const VertexPattern& other = vertexPattern(lookup.view(*end).kept);
         if (other.edge[std::size_t(e ^ 1)] == pattern.edge[std::size_t(e)]) continue;
         pickNearest(view, grid, index, [&](int o) { return (o >> axis & 1) == side; }, out);
     }
@@ -111,7 +124,7 @@ void judgeEdges(const Place& v, const VertexView& view, const VertexPattern& pat
 std::vector<Place> notExtrudable(const std::vector<Place>& vertices, const CellGrid& grid,
                                  const std::vector<Mask::Ptr>& kept, const SurfaceIndex& index) {
     return collect(vertices, grid, kept, [&](const Place& v, VertexLookup& lookup, std::vector<Place>& out) {
-        const VertexView view = lookup.view(v.level, v.at);
+        const VertexView view = lookup.view(v);
         const VertexPattern& pattern = vertexPattern(view.kept);
         if (pattern.fans == 0) return;
         for (std::size_t f = 0; f < pattern.fans; ++f) {
@@ -127,16 +140,11 @@ std::vector<Place> notExtrudable(const std::vector<Place>& vertices, const CellG
 std::vector<Place> verticesOf(const std::vector<Place>& cells, const CellGrid& grid, const std::vector<Mask::Ptr>& kept) {
     std::vector<Place> vertices;
     VertexLookup lookup(grid, kept);
-    const int last = static_cast<int>(grid.levels.size()) - 1;
     for (const Place& cell : cells) {
+        const LevelTriple half = halvedLevel(grid.levels[std::size_t(cell.level)].level);
         for (int i = 0; i < 27; ++i) {
             const Index3 p{2 * cell.at[0] + i % 3, 2 * cell.at[1] + i / 3 % 3, 2 * cell.at[2] + i / 9};
-            const bool even = !(p[0] & 1 || p[1] & 1 || p[2] & 1);
-            if (cell.level < last && lookup.isCorner(cell.level + 1, p)) {
-                vertices.push_back({cell.level + 1, p});
-            } else if (even) {
-                vertices.push_back({cell.level, {p[0] >> 1, p[1] >> 1, p[2] >> 1}});
-            }
+            if (const std::optional<Place> v = lookup.vertexAt(lookup.fine(half, p))) vertices.push_back(*v);
         }
     }
     sortUnique(vertices);

@@ -3,82 +3,183 @@
 namespace i2b {
 namespace {
 
-// Children of the coarse cells that lie beside cells of the next level; the others have no vertex in common with it.
-Mask::Ptr childrenBeside(const Mask& coarse, const Mask& fineCells, const Index3& size) {
-    const Mask::Ptr beside = dilated(*parentsOf(fineCells), 1, size);
-    return childrenOf(*intersectionOf(coarse, *beside));
+using Masks = std::vector<Mask::Ptr>;
+
+Masks emptyMasks(int count) {
+    Masks masks;
+    for (int l = 0; l < count; ++l) masks.push_back(std::make_shared<Mask>(false));
+    return masks;
+}
+
+Masks removedCells(const CellGrid& grid, const Masks& kept) {
+    Masks removed;
+    for (std::size_t k = 0; k < kept.size(); ++k) removed.push_back(differenceOf(*grid.levels[k].cells, *kept[k]));
+    return removed;
+}
+
+// Adds corners of one level's cells to the lattices of vertices.
+void addCorners(Masks& vertices, const Mask& cells, const LevelTriple& level) {
+    if (isEmpty(cells)) return;
+    const int finest = level.finest();
+    Mask::Ptr corners = cornersOf(cells);
+    if (!level.same()) corners = embeddedVertices(*corners, level, allAxes(finest));
+    vertices[static_cast<std::size_t>(finest)]->topologyUnion(*corners);
+}
+
+// A superset of the cells of one level that touch cells of another.
+Mask::Ptr beside(const Lattice& lattice, const CellLevel& cells, const Mask& others, const LevelTriple& level) {
+    const LevelTriple low = coarserOf(cells.level, level);
+    const Mask::Ptr mine = overlapping(*cells.cells, cells.level, low);
+    const Mask::Ptr theirs = intersectionOf(*overlapping(others, level, low), *dilated(*mine, 1, lattice.cells(low)));
+    if (isEmpty(*theirs)) return theirs;
+    const Mask::Ptr near = intersectionOf(*mine, *dilated(*theirs, 1, lattice.cells(low)));
+    return intersectionOf(*cells.cells, *overlapping(*near, low, cells.level));
+}
+
+// Drops the vertices that test() rejects.
+template <class Test>
+void filter(const CellGrid& grid, const Masks& kept, Mask& vertices, int level, const Test& test) {
+    const std::vector<MaskLeaf*> leaves = leavesOf(vertices);
+    parallelChunks(leaves.size(), 16, [&](std::size_t begin, std::size_t end, std::size_t) {
+        VertexLookup lookup(grid, kept);
+        for (std::size_t i = begin; i < end; ++i) {
+            const Index3 o = toIndex(leaves[i]->origin());
+            const LeafBits all = leafBits(leaves[i]);
+            LeafBits passed{};
+            bits::forEach(all, [&](int x, int y, int z) {
+                if (test(lookup.view(level, {o[0] + x, o[1] + y, o[2] + z}))) passed[std::size_t(x)] |= std::uint64_t(1) << (y * 8 + z);
+            });
+            setLeafBits(*leaves[i], passed);
+        }
+    });
+    pruneEmptyLeaves(vertices);
+}
+
+// Corners of the cells that lie on the edge or face of a cell of `others`, by level; test() knows such a vertex.
+template <class Test>
+Masks hangingOn(const CellGrid& grid, const Masks& kept, const Masks& cells, const Masks& others, const Test& test) {
+    Masks hanging = emptyMasks(grid.lattice.maxLevel + 1);
+    const std::vector<std::vector<std::size_t>> touching = touchingLevels(grid);
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+        auto near = std::make_shared<Mask>(false);
+        const CellLevel own{grid.levels[k].level, cells[k]};
+        for (std::size_t m : touching[k]) {
+            if (finerOf(grid.levels[m].level, own.level) == grid.levels[m].level) continue; // nowhere longer
+            near->topologyUnion(*beside(grid.lattice, own, *others[m], grid.levels[m].level));
+        }
+        addCorners(hanging, *near, own.level);
+    }
+    for (std::size_t l = 0; l < hanging.size(); ++l) filter(grid, kept, *hanging[l], static_cast<int>(l), test);
+    return hanging;
 }
 
 } // namespace
 
-VertexLookup::VertexLookup(const CellGrid& grid, const std::vector<Mask::Ptr>& kept) : lattice_(grid.lattice) {
+VertexLookup::VertexLookup(const CellGrid& grid, const std::vector<Mask::Ptr>& kept)
+    : grid_(grid), touching_(touchingLevels(grid)) {
     for (const CellLevel& level : grid.levels) cells_.emplace_back(*level.cells);
     for (const Mask::Ptr& mask : kept) kept_.emplace_back(*mask);
 }
 
-bool VertexLookup::isCell(int level, const Index3& c) { return cells_[std::size_t(level)].isValueOn(toCoord(c)); }
-bool VertexLookup::isKept(int level, const Index3& c) { return kept_[std::size_t(level)].isValueOn(toCoord(c)); }
+FinePoint VertexLookup::fine(const LevelTriple& level, const Index3& at) const {
+    const int finest = grid_.lattice.maxLevel + 1;
+    return {std::int64_t(at[0]) << (finest - level.x), std::int64_t(at[1]) << (finest - level.y),
+            std::int64_t(at[2]) << (finest - level.z)};
+}
 
-bool VertexLookup::isCorner(int level, const Index3& v) {
-    for (int o = 0; o < 8; ++o) {
-        if (isCell(level, {v[0] - 1 + (o & 1), v[1] - 1 + (o >> 1 & 1), v[2] - 1 + (o >> 2)})) return true;
+FinePoint VertexLookup::fine(const Place& v) const { return fine(allAxes(v.level), v.at); }
+
+bool VertexLookup::inCell(std::size_t level, const FinePoint& corner, Octant& octant) {
+    const LevelTriple& triple = grid_.levels[level].level;
+    const int finest = grid_.lattice.maxLevel + 1;
+    const Index3 c{static_cast<std::int32_t>(corner[0] >> (finest - triple.x)),
+                   static_cast<std::int32_t>(corner[1] >> (finest - triple.y)),
+                   static_cast<std::int32_t>(corner[2] >> (finest - triple.z))};
+    const bool kept = kept_[level].isValueOn(toCoord(c));
+    if (!kept && !cells_[level].isValueOn(toCoord(c))) return false;
+    octant = {static_cast<std::int16_t>(level), kept, c};
+    last_ = level;
+    return true;
+}
+
+bool VertexLookup::find(const FinePoint& corner, Octant& octant) {
+    if (inCell(last_, corner, octant)) return true;
+    for (std::size_t level : touching_[last_]) {
+        if (inCell(level, corner, octant)) return true;
+    }
+    for (std::size_t level = 0; level < cells_.size(); ++level) {
+        if (inCell(level, corner, octant)) return true;
     }
     return false;
 }
 
+std::array<Octant, 8> VertexLookup::around(const FinePoint& p) {
+    std::array<Octant, 8> octants;
+    const Index3 n = grid_.lattice.count;
+    for (int o = 0; o < 8; ++o) {
+        FinePoint corner = p;
+        bool outside = false;
+        for (std::size_t a = 0; a < 3; ++a) {
+            corner[a] -= o >> a & 1 ? 0 : 1;
+            outside = outside || corner[a] < 0 || corner[a] >= std::int64_t(n[a]) << (grid_.lattice.maxLevel + 1);
+        }
+        if (!outside) find(corner, octants[std::size_t(o)]);
+    }
+    return octants;
+}
+
 VertexView VertexLookup::view(int level, const Index3& v) {
     VertexView view;
-    const Index3 n = lattice_.cells(level);
+    const Index3 n = grid_.lattice.cells(level);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         if (v[axis] == 0) view.outside |= 1 << (2 * axis);
         if (v[axis] == n[axis]) view.outside |= 2 << (2 * axis);
     }
+    view.octants = around(fine({level, v}));
     int kept = 0;
-    for (int o = 0; o < 8; ++o) {
-        const Index3 c{v[0] - 1 + (o & 1), v[1] - 1 + (o >> 1 & 1), v[2] - 1 + (o >> 2)};
-        Octant& octant = view.octants[std::size_t(o)];
-        if (c[0] < 0 || c[1] < 0 || c[2] < 0 || c[0] >= n[0] || c[1] >= n[1] || c[2] >= n[2]) continue;
-        octant.level = static_cast<std::int8_t>(level);
-        octant.cell = c;
-        if (isKept(level, c)) {
-            octant.kept = true;
-        } else if (!isCell(level, c) && level > 0) {
-            octant.level = static_cast<std::int8_t>(level - 1);
-            octant.cell = {c[0] >> 1, c[1] >> 1, c[2] >> 1};
-            octant.kept = isKept(level - 1, octant.cell);
-        }
-        kept |= int(octant.kept) << o;
-    }
+    for (std::size_t o = 0; o < 8; ++o) kept |= int(view.octants[o].kept) << o;
     view.kept = view.outside ? mirrored(static_cast<std::uint8_t>(kept), view.outside) : static_cast<std::uint8_t>(kept);
     return view;
 }
 
-std::vector<Mask::Ptr> activeVertices(const CellGrid& grid, const std::vector<Mask::Ptr>& kept) {
-    const std::size_t levels = grid.levels.size();
-    std::vector<Mask::Ptr> active(levels);
-    for (std::size_t l = 0; l < levels; ++l) {
-        active[l] = cornersOf(*kept[l]);
-        if (l == 0) continue;
-        const Mask& cells = *grid.levels[l].cells;
-        const Mask::Ptr coarse = childrenBeside(*kept[l - 1], cells, grid.lattice.cells(static_cast<int>(l) - 1));
-        const Mask::Ptr hanging = intersectionOf(*cornersOf(*coarse), *cornersOf(*differenceOf(cells, *kept[l])));
-        active[l]->topologyUnion(*hanging);
+std::optional<Place> VertexLookup::vertexAt(const FinePoint& p) {
+    int level = -1;
+    for (const Octant& o : around(p)) {
+        if (o.level < 0) continue;
+        const LevelTriple& triple = grid_.levels[static_cast<std::size_t>(o.level)].level;
+        bool corner = true;
+        for (std::size_t a = 0; a < 3; ++a) {
+            corner = corner && (p[a] & ((std::int64_t(1) << (grid_.lattice.maxLevel + 1 - triple[a])) - 1)) == 0;
+        }
+        if (corner) level = std::max(level, triple.finest());
     }
-    for (std::size_t l = 0; l + 1 < levels; ++l) active[l] = differenceOf(*active[l], *evenSamplesOf(*active[l + 1]));
+    if (level < 0) return std::nullopt;
+    const int shift = grid_.lattice.maxLevel + 1 - level;
+    return Place{level, {static_cast<std::int32_t>(p[0] >> shift), static_cast<std::int32_t>(p[1] >> shift),
+                         static_cast<std::int32_t>(p[2] >> shift)}};
+}
+
+std::vector<Mask::Ptr> activeVertices(const CellGrid& grid, const std::vector<Mask::Ptr>& kept) {
+    Masks active = hangingOn(grid, kept, removedCells(grid, kept), kept, [](const VertexView& v) { return v.kept != 0; });
+    for (std::size_t k = 0; k < kept.size(); ++k) addCorners(active, *kept[k], grid.levels[k].level);
+    for (std::size_t l = 0; l + 1 < active.size(); ++l) active[l] = differenceOf(*active[l], *evenSamplesOf(*active[l + 1]));
     return active;
 }
 
 std::vector<Mask::Ptr> frontVertices(const CellGrid& grid, const std::vector<Mask::Ptr>& kept,
                                      const std::vector<Mask::Ptr>& active) {
-    std::vector<Mask::Ptr> front(active.size());
+    const Masks removed = removedCells(grid, kept);
+    Masks touching = hangingOn(grid, kept, kept, removed, [](const VertexView& v) {
+        return std::any_of(v.octants.begin(), v.octants.end(), [](const Octant& o) { return o.level >= 0 && !o.kept; });
+    });
+    for (std::size_t k = 0; k < removed.size(); ++k) addCorners(touching, *removed[k], grid.levels[k].level);
+    Masks front;
     for (std::size_t l = 0; l < active.size(); ++l) {
-        const Mask& cells = *grid.levels[l].cells;
-        const Mask::Ptr removed = differenceOf(cells, *kept[l]);
-        front[l] = intersectionOf(*active[l], *cornersOf(*removed));
+        front.push_back(intersectionOf(*active[l], *touching[l]));
         if (l == 0) continue;
-        const Mask::Ptr coarseRemoved = differenceOf(*grid.levels[l - 1].cells, *kept[l - 1]);
-        const Mask::Ptr coarse = childrenBeside(*coarseRemoved, cells, grid.lattice.cells(static_cast<int>(l) - 1));
-        front[l]->topologyUnion(*intersectionOf(*active[l], *cornersOf(*coarse)));
+        const Mask::Ptr coarse = intersectionOf(*touching[l - 1], *evenSamplesOf(*active[l])); // corners of both
+        const LevelTriple level = allAxes(static_cast<int>(l));
+        front[l]->topologyUnion(*intersectionOf(*active[l], *embeddedVertices(*coarse, allAxes(static_cast<int>(l) - 1), level)));
     }
     return front;
 }

@@ -32,7 +32,7 @@ void paintSeed(Regions& regions, const CellGrid& grid, const Seed& seed) {
                     fmt::format("choose one between {} and {}", at(grid.lattice.domain().lo), at(grid.lattice.domain().hi)));
     }
     for (std::size_t l = 0; l < grid.levels.size(); ++l) {
-        const Index3 c = grid.lattice.cellAt(static_cast<int>(l), seed.place);
+        const Index3 c = grid.lattice.cellAt(grid.levels[l].level, seed.place);
         if (!grid.levels[l].cells->isValueOn(toCoord(c))) continue;
         const std::int32_t region = regionAt(regions, l, c);
         if (region < 0) {

@@ -1,4 +1,5 @@
 #include "i2b/core/checksum.h"
+#include "i2b/grid/neighbours.h"
 #include "i2b/grid/ranked_mask.h"
 #include "i2b/paint/paint.h"
 #include "i2b/paint/union_find.h"
@@ -72,9 +73,16 @@ std::int64_t pieceOf(const LevelPieces& level, RankedMask::Reader& reader, const
     return -1;
 }
 
-// Open cells beside a coarser open cell: those whose neighbour is no cell of their own level.
-void joinCoarser(const LevelPieces& level, std::size_t node, const LevelPieces& coarse, RankedMask::Reader& cells,
-                 RankedMask::Reader& coarseOpen, UnionFind& sets) {
+// A level that the cells of another may touch, and how to look cells up in it.
+struct Across {
+    const LevelPieces& level;
+    const LevelTriple triple;
+    RankedMask::Reader reader;
+};
+
+// Open cells beside an open cell of another level: those whose neighbour is no cell of their own level.
+void joinLevels(const LevelPieces& level, const LevelTriple& triple, std::size_t node, RankedMask::Reader& cells,
+                std::vector<Across>& others, UnionFind& sets) {
     const Index3 origin = toIndex(level.open.leaf(node).origin());
     const auto nodeBits = [&](const Index3& at) {
         const std::int32_t i = cells.leafIndex(at);
@@ -82,43 +90,50 @@ void joinCoarser(const LevelPieces& level, std::size_t node, const LevelPieces& 
     };
     const LeafBits own = nodeBits(origin);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        for (int side : {-1, 1}) {
+        for (int side = 0; side < 2; ++side) {
             Index3 next = origin;
-            next[axis] += 8 * side;
-            const bool outside = next[axis] < 0;
-            const LeafBits other = outside ? LeafBits{} : nodeBits(next);
+            next[axis] += side ? 8 : -8;
+            const LeafBits other = next[axis] < 0 ? LeafBits{} : nodeBits(next);
             const int a = static_cast<int>(axis);
-            const LeafBits has = side > 0 ? bits::neighbourUp(own, other, a) : bits::neighbourDown(own, other, a);
+            const LeafBits has = side ? bits::neighbourUp(own, other, a) : bits::neighbourDown(own, other, a);
             for (std::uint32_t k = level.first[node]; k < level.first[node + 1]; ++k) {
                 LeafBits rim = level.pieces[k].mask;
                 for (std::size_t n = 0; n < 8; ++n) rim[n] &= ~has[n];
                 bits::forEach(rim, [&](int x, int y, int z) {
-                    Index3 c{origin[0] + x, origin[1] + y, origin[2] + z};
-                    c[axis] += side;
-                    if (c[axis] < 0) return;
-                    const std::int64_t p = pieceOf(coarse, coarseOpen, {c[0] >> 1, c[1] >> 1, c[2] >> 1});
-                    if (p >= 0) sets.join(level.base + k, static_cast<std::uint32_t>(p));
+                    const Index3 c{origin[0] + x, origin[1] + y, origin[2] + z};
+                    if (!side && c[axis] == 0) return;
+                    for (Across& across : others) {
+                        forEachAcross(c, triple, across.triple, axis, side, [&](const Index3& n) {
+                            const std::int64_t p = pieceOf(across.level, across.reader, n);
+                            if (p >= 0) sets.join(level.base + k, static_cast<std::uint32_t>(p));
+                        });
+                    }
                 });
             }
         }
     }
 }
 
-void joinPieces(const std::vector<LevelPieces>& levels, UnionFind& sets) {
+void joinPieces(const CellGrid& grid, const std::vector<LevelPieces>& levels, UnionFind& sets) {
+    const std::vector<std::vector<std::size_t>> touching = touchingLevels(grid);
     for (std::size_t l = 0; l < levels.size(); ++l) {
         const LevelPieces& level = levels[l];
         parallelChunks(level.open.leafCount(), 64, [&](std::size_t begin, std::size_t end, std::size_t) {
-            RankedMask::Reader open(level.open), cells(level.cells), coarse(levels[l > 0 ? l - 1 : 0].open);
+            RankedMask::Reader open(level.open), cells(level.cells);
+            std::vector<Across> others;
+            for (std::size_t m : touching[l]) { // each pair of levels once
+                if (m < l) others.push_back({levels[m], grid.levels[m].level, RankedMask::Reader(levels[m].open)});
+            }
             for (std::size_t node = begin; node < end; ++node) {
                 joinSameLevel(level, node, open, sets);
-                if (l > 0) joinCoarser(level, node, levels[l - 1], cells, coarse, sets);
+                if (!others.empty()) joinLevels(level, grid.levels[l].level, node, cells, others, sets);
             }
         });
     }
 }
 
 // Adds one piece to its region's figures.
-void account(Region& region, const RegionPiece& piece, const Lattice& lattice, int level) {
+void account(Region& region, const RegionPiece& piece, const Lattice& lattice, const LevelTriple& level) {
     const Vec3 s = lattice.cellSize(level);
     const int n = bits::count(piece.mask);
     const Index3 size = lattice.cells(level);
@@ -159,7 +174,7 @@ Regions labelRegions(const CellGrid& grid, const CutCells& cut) {
         total += static_cast<std::uint32_t>(levels[l].pieces.size());
     }
     UnionFind sets(total);
-    joinPieces(levels, sets);
+    joinPieces(grid, levels, sets);
 
     Regions regions;
     std::vector<std::int32_t> number(total, -1); // of the set whose smallest piece this is
@@ -173,7 +188,7 @@ Regions labelRegions(const CellGrid& grid, const CutCells& cut) {
                 region.name = "region" + std::to_string(region.id);
             }
             levels[l].pieces[k].region = number[root];
-            account(regions.table[static_cast<std::size_t>(number[root])], levels[l].pieces[k], grid.lattice, static_cast<int>(l));
+            account(regions.table[static_cast<std::size_t>(number[root])], levels[l].pieces[k], grid.lattice, grid.levels[l].level);
         }
         regions.pieces.push_back(std::move(levels[l].pieces));
     }
