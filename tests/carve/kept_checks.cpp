@@ -25,17 +25,20 @@ class Vertices {
         }
         return bits;
     }
-    // Finest level of a cell that has v as a corner; -1 where none has.
+    // Finest level of a cell that has v as a corner, or of a cell around where edges cross; -1: no vertex.
     int level(const Index3& v) const {
-        int best = -1;
+        int best = -1, any = -1;
+        std::array<bool, 3> meet{};
         for (int o = 0; o < 8; ++o) {
             const int c = around(v, o);
+            for (std::size_t a = 0; a < 3; ++a) meet[a] = meet[a] || c != around(v, o ^ 1 << a);
             if (c < 0) continue;
             const Index3 s = array_.span(c);
-            if (v[0] % s[0] == 0 && v[1] % s[1] == 0 && v[2] % s[2] == 0)
-                best = std::max(best, array_.cells[static_cast<std::size_t>(c)].triple.finest());
+            const int finest = array_.cells[static_cast<std::size_t>(c)].triple.finest();
+            any = std::max(any, finest);
+            if (v[0] % s[0] == 0 && v[1] % s[1] == 0 && v[2] % s[2] == 0) best = std::max(best, finest);
         }
-        return best;
+        return best >= 0 || !(meet[0] && meet[1] && meet[2]) ? best : any;
     }
     const VertexPattern& pattern(const Index3& v) const {
         int bits = 0;

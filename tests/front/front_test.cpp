@@ -18,7 +18,7 @@ Vec3 pointOf(const FrontMesh& mesh, FrontMesh::VertexHandle v) {
 TEST_P(RandomFront, IsManifoldAndExtrudes) {
     for (unsigned seed = 20 * GetParam(); seed < 20 * GetParam() + 20; ++seed) {
         const CarvedAtRandom c(seed, {5, 6, 4}, 1 + static_cast<int>(seed % 3),
-                               1 + static_cast<int>(seed / 3 % 2), 0.05 + 0.05 * (seed % 7));
+                               1 + static_cast<int>(seed / 3 % 2), 0.05 + 0.05 * (seed % 7), seed % 2 == 1);
         const LatticeMesh lattice(c.grid, c.kept);
         const std::vector<Vec3> core = lattice.latticePoints();
         const Front front = buildFront(lattice, 0.07);

@@ -44,7 +44,7 @@ TEST_P(RandomAssembly, IsValid) {
     const std::vector<Part> parts{{"left", "", 1}, {"right", "", 1}, {"unused", "", 0}};
     for (unsigned seed = 10 * GetParam(); seed < 10 * GetParam() + 10; ++seed) {
         const CarvedAtRandom c(seed, {5, 6, 4}, 1 + static_cast<int>(seed % 3),
-                               1 + static_cast<int>(seed / 3 % 2), 0.05 + 0.05 * (seed % 7));
+                               1 + static_cast<int>(seed / 3 % 2), 0.05 + 0.05 * (seed % 7), seed % 2 == 1);
         for (int layers : {1, 3}) {
             const Assembled a(c.grid, c.kept, parts, layers);
             expectSound(a.mesh, "seed " + std::to_string(seed) + ", layers " + std::to_string(layers));

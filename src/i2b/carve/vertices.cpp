@@ -47,7 +47,7 @@ void filter(const CellGrid& grid, const Masks& kept, Mask& vertices, int level, 
             const LeafBits all = leafBits(leaves[i]);
             LeafBits passed{};
             bits::forEach(all, [&](int x, int y, int z) {
-                if (test(lookup.view(level, {o[0] + x, o[1] + y, o[2] + z}))) passed[std::size_t(x)] |= std::uint64_t(1) << (y * 8 + z);
+                if (test(lookup, Place{level, {o[0] + x, o[1] + y, o[2] + z}})) passed[std::size_t(x)] |= std::uint64_t(1) << (y * 8 + z);
             });
             setLeafBits(*leaves[i], passed);
         }
@@ -69,8 +69,51 @@ Masks hangingOn(const CellGrid& grid, const Masks& kept, const Masks& cells, con
         }
         addCorners(hanging, *near, own.level);
     }
-    for (std::size_t l = 0; l < hanging.size(); ++l) filter(grid, kept, *hanging[l], static_cast<int>(l), test);
+    for (std::size_t l = 0; l < hanging.size(); ++l) {
+        filter(grid, kept, *hanging[l], static_cast<int>(l), [&](VertexLookup& lookup, const Place& v) { return test(lookup.view(v)); });
+    }
     return hanging;
+}
+
+// Cells meet across all three planes through the point.
+bool isCrossing(const std::array<Octant, 8>& octants) {
+    for (int axis = 0; axis < 3; ++axis) {
+        bool meet = false;
+        for (std::size_t o = 0; o < 8; ++o) {
+            const Octant &a = octants[o], &b = octants[o ^ std::size_t(1) << axis];
+            meet = meet || a.level != b.level || a.cell != b.cell;
+        }
+        if (!meet) return false;
+    }
+    return true;
+}
+
+// Crossings, by level, that test() accepts: only where each of two levels is the finer one along some axis.
+template <class Test>
+Masks crossings(const CellGrid& grid, const Masks& kept, const Test& test) {
+    Masks found = emptyMasks(grid.lattice.maxLevel + 1);
+    const std::vector<std::vector<std::size_t>> touching = touchingLevels(grid);
+    for (std::size_t k = 0; k < grid.levels.size(); ++k) {
+        for (std::size_t m : touching[k]) {
+            const LevelTriple &a = grid.levels[k].level, &b = grid.levels[m].level, fine = finerOf(a, b);
+            if (m < k || fine == a || fine == b) continue;
+            const Mask::Ptr near = beside(grid.lattice, grid.levels[k], *grid.levels[m].cells, b);
+            if (isEmpty(*near)) continue;
+            addCorners(found, *overlapping(*near, a, fine), fine);
+        }
+    }
+    for (std::size_t l = 0; l < found.size(); ++l) {
+        filter(grid, kept, *found[l], static_cast<int>(l), [&](VertexLookup& lookup, const Place& v) {
+            const std::optional<Place> vertex = lookup.vertexAt(lookup.fine(v));
+            return vertex && vertex->level == static_cast<int>(l) && test(lookup.view(v));
+        });
+    }
+    return found;
+}
+
+bool touchesKept(const VertexView& v) { return v.kept != 0; }
+bool touchesRemoved(const VertexView& v) {
+    return std::any_of(v.octants.begin(), v.octants.end(), [](const Octant& o) { return o.level >= 0 && !o.kept; });
 }
 
 } // namespace
@@ -142,17 +185,23 @@ VertexView VertexLookup::view(int level, const Index3& v) {
     return view;
 }
 
-std::optional<Place> VertexLookup::vertexAt(const FinePoint& p) {
-    int level = -1;
-    for (const Octant& o : around(p)) {
+int VertexLookup::vertexLevel(const FinePoint& p, const std::array<Octant, 8>& octants) const {
+    int corner = -1, finest = -1;
+    for (const Octant& o : octants) {
         if (o.level < 0) continue;
         const LevelTriple& triple = grid_.levels[static_cast<std::size_t>(o.level)].level;
-        bool corner = true;
+        bool isCorner = true;
         for (std::size_t a = 0; a < 3; ++a) {
-            corner = corner && (p[a] & ((std::int64_t(1) << (grid_.lattice.maxLevel + 1 - triple[a])) - 1)) == 0;
+            isCorner = isCorner && (p[a] & ((std::int64_t(1) << (grid_.lattice.maxLevel + 1 - triple[a])) - 1)) == 0;
         }
-        if (corner) level = std::max(level, triple.finest());
+        if (isCorner) corner = std::max(corner, triple.finest());
+        finest = std::max(finest, triple.finest());
     }
+    return corner >= 0 ? corner : isCrossing(octants) ? finest : -1;
+}
+
+std::optional<Place> VertexLookup::vertexAt(const FinePoint& p) {
+    const int level = vertexLevel(p, around(p));
     if (level < 0) return std::nullopt;
     const int shift = grid_.lattice.maxLevel + 1 - level;
     return Place{level, {static_cast<std::int32_t>(p[0] >> shift), static_cast<std::int32_t>(p[1] >> shift),
@@ -160,7 +209,9 @@ std::optional<Place> VertexLookup::vertexAt(const FinePoint& p) {
 }
 
 std::vector<Mask::Ptr> activeVertices(const CellGrid& grid, const std::vector<Mask::Ptr>& kept) {
-    Masks active = hangingOn(grid, kept, removedCells(grid, kept), kept, [](const VertexView& v) { return v.kept != 0; });
+    Masks active = hangingOn(grid, kept, removedCells(grid, kept), kept, touchesKept);
+    const Masks crossed = crossings(grid, kept, touchesKept);
+    for (std::size_t l = 0; l < active.size(); ++l) active[l]->topologyUnion(*crossed[l]);
     for (std::size_t k = 0; k < kept.size(); ++k) addCorners(active, *kept[k], grid.levels[k].level);
     for (std::size_t l = 0; l + 1 < active.size(); ++l) active[l] = differenceOf(*active[l], *evenSamplesOf(*active[l + 1]));
     return active;
@@ -169,9 +220,9 @@ std::vector<Mask::Ptr> activeVertices(const CellGrid& grid, const std::vector<Ma
 std::vector<Mask::Ptr> frontVertices(const CellGrid& grid, const std::vector<Mask::Ptr>& kept,
                                      const std::vector<Mask::Ptr>& active) {
     const Masks removed = removedCells(grid, kept);
-    Masks touching = hangingOn(grid, kept, kept, removed, [](const VertexView& v) {
-        return std::any_of(v.octants.begin(), v.octants.end(), [](const Octant& o) { return o.level >= 0 && !o.kept; });
-    });
+    Masks touching = hangingOn(grid, kept, kept, removed, touchesRemoved);
+    const Masks crossed = crossings(grid, kept, touchesRemoved);
+    for (std::size_t l = 0; l < active.size(); ++l) touching[l]->topologyUnion(*crossed[l]);
     for (std::size_t k = 0; k < removed.size(); ++k) addCorners(touching, *removed[k], grid.levels[k].level);
     Masks front;
     for (std::size_t l = 0; l < active.size(); ++l) {

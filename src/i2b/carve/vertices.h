@@ -1,6 +1,7 @@
-// Lattice vertices that the mesh will have. They are kept on lattices with the same level on all axes: a vertex belongs
-// to the finest level, over all axes, of a cell that has it as a corner; a vertex on the middle of a coarser cell's edge
-// or face so belongs to the finer level beside it.
+// Lattice vertices that the mesh will have: corners of cells, and the crossings of two cells' edges on the face between
+// them (one cell is split along one axis, the cell across along the other). They are kept on lattices with the same
+// level on all axes: a vertex belongs to the finest level, over all axes, of a cell that has it as a corner, a crossing
+// to that of a cell around it; a vertex on the middle of a coarser cell's edge or face so belongs to the finer level.
 #pragma once
 #include "i2b/carve/kept_cells.h"
 #include "i2b/carve/vertex_patterns.h"
@@ -38,13 +39,14 @@ class VertexLookup {
     VertexLookup(const CellGrid& grid, const std::vector<Mask::Ptr>& kept);
     VertexView view(int level, const Index3& v);
     VertexView view(const Place& v) { return view(v.level, v.at); }
-    // The vertex at a point, on the level that it belongs to; none if no cell has a corner there.
+    // The vertex at a point, on the level that it belongs to; none if there is none.
     std::optional<Place> vertexAt(const FinePoint& p);
 
     FinePoint fine(const Place& v) const;           // of a vertex
     FinePoint fine(const LevelTriple& level, const Index3& at) const;
 
   private:
+    int vertexLevel(const FinePoint& p, const std::array<Octant, 8>& octants) const; // -1: no vertex
     bool find(const FinePoint& corner, Octant& octant); // the cell that holds the finest half cell with that low corner
     bool inCell(std::size_t level, const FinePoint& corner, Octant& octant);
     std::array<Octant, 8> around(const FinePoint& p);

@@ -23,8 +23,8 @@ constexpr double prismHeight = 0.7; // of h: what the energy and the Laplacian t
 
 // f(level, coordinates, rank) for marked bits of ranked masks, leaf-parallel, one Reader a chunk.
 template <class Ranked, class F>
-void forMarked(const LatticeMesh& mesh, const Ranked& rankedOf, const std::vector<std::uint8_t>& marks, const F& f) {
-    for (int l = 0; l < mesh.levels(); ++l) {
+void forMarked(const LatticeMesh& mesh, int levels, const Ranked& rankedOf, const std::vector<std::uint8_t>& marks, const F& f) {
+    for (int l = 0; l < levels; ++l) {
         const RankedMask& ranked = rankedOf(l);
         parallelChunks(ranked.leafCount(), 16, [&](std::size_t begin, std::size_t end, std::size_t) {
             LatticeMesh::Reader reader(mesh);
@@ -52,7 +52,7 @@ Marks markBand(const LatticeMesh& mesh, int rings) {
     for (int ring = 0; ring <= rings; ++ring) {
         const auto now = static_cast<std::uint8_t>(ring + 1);
         const std::vector<std::uint8_t> before = marks.points;
-        forMarked(mesh, [&](int l) -> const RankedMask& { return mesh.points(l); }, before,
+        forMarked(mesh, mesh.pointLevels(), [&](int l) -> const RankedMask& { return mesh.points(l); }, before,
                   [&](LatticeMesh::Reader& reader, int l, const Index3& v, std::size_t rank) {
                       if (before[rank] != now) return;
                       reader.cellsAround(l, v, [&](int cl, const Index3& c) {
@@ -60,7 +60,7 @@ Marks markBand(const LatticeMesh& mesh, int rings) {
                       });
                   });
         const std::vector<std::uint8_t> cells = marks.cells;
-        forMarked(mesh, [&](int l) -> const RankedMask& { return mesh.cells(l); }, cells,
+        forMarked(mesh, mesh.levels(), [&](int l) -> const RankedMask& { return mesh.cells(l); }, cells,
                   [&](LatticeMesh::Reader& reader, int l, const Index3& c, std::size_t rank) {
                       if (cells[rank] != now) return;
                       reader.faces(l, c, [&](const CellFace& face) {
@@ -179,7 +179,7 @@ std::vector<std::int32_t> numberNodes(Band& band, const LatticeMesh& mesh, const
     const std::vector<Vec3> positions = mesh.latticePoints();
     std::vector<double> h(marks.points.size());
     std::vector<std::uint8_t> outside(marks.points.size(), 0);
-    for (int l = 0; l < mesh.levels(); ++l) {
+    for (int l = 0; l < mesh.pointLevels(); ++l) {
         const Index3 n = mesh.lattice().cells(l);
         mesh.points(l).forEach([&](std::int64_t rank, const Index3& v) {
             const auto r = static_cast<std::size_t>(rank);

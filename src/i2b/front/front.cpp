@@ -30,7 +30,7 @@ void collectFaces(const LatticeMesh& mesh, int level, std::size_t node, LatticeM
 void addVertices(Front& front, const LatticeMesh& mesh, double thickness) {
     const auto n = static_cast<std::size_t>(mesh.fanCount());
     front.front.resize(n), front.corePoint.resize(n), front.h.resize(n), front.direction.resize(n), front.outside.resize(n);
-    for (int l = 0; l < mesh.levels(); ++l) {
+    for (int l = 0; l < mesh.pointLevels(); ++l) {
         mesh.frontPoints(l).forEach([&](std::int64_t slot, const Index3& v) {
             const LatticeMesh::FrontPoint& p = mesh.frontPoint(slot);
             const VertexPattern& pattern = vertexPattern(p.pattern);

@@ -5,15 +5,17 @@
 
 namespace i2b {
 
-LatticeMesh::LatticeMesh(const CellGrid& grid, const KeptCells& kept) : grid_(grid) {
+LatticeMesh::LatticeMesh(const CellGrid& grid, const KeptCells& kept) : grid_(grid), kept_(kept) {
     const std::vector<Mask::Ptr> active = activeVertices(grid, kept.levels);
     const std::vector<Mask::Ptr> front = frontVertices(grid, kept.levels, active);
     std::int64_t slots = 0;
-    for (std::size_t l = 0; l < grid.levels.size(); ++l) {
-        cells_.emplace_back(kept.levels[l], cellCount_);
+    for (const Mask::Ptr& cells : kept.levels) {
+        cells_.emplace_back(cells, cellCount_);
+        cellCount_ += cells_.back().size();
+    }
+    for (std::size_t l = 0; l < active.size(); ++l) {
         points_.emplace_back(active[l], pointCount_);
         frontPoints_.emplace_back(front[l], slots);
-        cellCount_ += cells_[l].size();
         pointCount_ += points_[l].size();
         slots += frontPoints_[l].size();
     }
@@ -23,7 +25,7 @@ LatticeMesh::LatticeMesh(const CellGrid& grid, const KeptCells& kept) : grid_(gr
     }
     front_.resize(static_cast<std::size_t>(slots));
     std::vector<std::int32_t> fans(front_.size()), extras(front_.size());
-    for (std::size_t l = 0; l < grid.levels.size(); ++l) {
+    for (std::size_t l = 0; l < frontPoints_.size(); ++l) {
         const RankedMask& ranked = frontPoints_[l];
         parallelChunks(ranked.leafCount(), 16, [&](std::size_t begin, std::size_t end, std::size_t) {
             VertexLookup lookup(grid, kept.levels);
@@ -55,7 +57,7 @@ LatticeMesh::LatticeMesh(const CellGrid& grid, const KeptCells& kept) : grid_(gr
 
 std::vector<Vec3> LatticeMesh::latticePoints() const {
     std::vector<Vec3> positions(static_cast<std::size_t>(pointCount()));
-    for (int l = 0; l < levels(); ++l) {
+    for (int l = 0; l < pointLevels(); ++l) {
         points(l).forEach([&](std::int64_t rank, const Index3& v) {
             positions[static_cast<std::size_t>(rank)] = lattice().corner(l, v);
         });
@@ -69,96 +71,128 @@ std::vector<Vec3> LatticeMesh::latticePoints() const {
     return positions;
 }
 
-LatticeMesh::Reader::Reader(const LatticeMesh& mesh) : mesh_(mesh) {
-    for (std::size_t l = 0; l < mesh.cells_.size(); ++l) {
-        kept_.emplace_back(mesh.cells_[l]);
-        points_.emplace_back(mesh.points_[l]);
-        frontPoints_.emplace_back(mesh.frontPoints_[l]);
-        cells_.emplace_back(*mesh.grid_.levels[l].cells);
-    }
+LatticeMesh::Reader::Reader(const LatticeMesh& mesh)
+    : mesh_(mesh), touching_(touchingLevels(mesh.grid_)), lookup_(mesh.grid_, mesh.kept_.levels) {
+    for (const RankedMask& cells : mesh.cells_) kept_.emplace_back(cells);
+    for (const CellLevel& level : mesh.grid_.levels) cells_.emplace_back(*level.cells);
+    for (const RankedMask& points : mesh.points_) points_.emplace_back(points);
+    for (const RankedMask& points : mesh.frontPoints_) frontPoints_.emplace_back(points);
 }
 
-// Finds the faces of cell c in one direction: one, or four where the cells across are finer.
+// Finds the faces of cell c in one direction: one, or up to four where the cells across are finer along the face.
 int LatticeMesh::Reader::neighbours(int level, const Index3& c, int direction) {
     const auto axis = static_cast<std::size_t>(direction >> 1);
     const int side = direction & 1;
-    const auto l = static_cast<std::size_t>(level);
-    Index3 n = c, low = c;
+    Index3 n = c;
     n[axis] += side ? 1 : -1;
-    low[axis] += side;
     CellFace& face = found_[0];
     face = CellFace{};
-    if (n[axis] < 0 || n[axis] >= mesh_.lattice().cells(level)[axis]) {
+    if (n[axis] < 0 || n[axis] >= mesh_.lattice().cells(mesh_.levelOf(level))[axis]) {
         face.kind = FaceKind::side;
         face.side = static_cast<std::uint8_t>(direction);
-    } else if (const std::int64_t rank = kept_[l].rank(n); rank >= 0) {
+    } else if (const std::int64_t rank = kept_[static_cast<std::size_t>(level)].rank(n); rank >= 0) {
         face.other = rank;
-    } else if (cells_[l].isValueOn(toCoord(n))) {
+    } else if (hasCell(level, n)) {
         face.kind = FaceKind::front;
     } else {
-        const Index3 p{n[0] >> 1, n[1] >> 1, n[2] >> 1};
-        if (level > 0 && cells_[l - 1].isValueOn(toCoord(p))) {
-            face.other = kept_[l - 1].rank(p);
-            face.kind = face.other >= 0 ? FaceKind::internal : FaceKind::front;
-        } else { // finer
-            for (int i = 0; i < 4; ++i) {
-                Index3 child{2 * n[0], 2 * n[1], 2 * n[2]}, corner{2 * low[0], 2 * low[1], 2 * low[2]};
-                child[axis] += side ? 0 : 1;
-                child[(axis + 1) % 3] += i & 1, corner[(axis + 1) % 3] += i & 1;
-                child[(axis + 2) % 3] += i >> 1, corner[(axis + 2) % 3] += i >> 1;
-                CellFace& part = found_[static_cast<std::size_t>(i)];
-                part = CellFace{};
-                part.other = kept_[l + 1].rank(child);
-                part.kind = part.other >= 0 ? FaceKind::internal : FaceKind::front;
-                fill(part, level + 1, corner, static_cast<int>(axis), side);
-            }
-            return 4;
-        }
+        return piecesAcross(level, c, axis, side);
     }
-    fill(face, level, low, static_cast<int>(axis), side);
+    Piece piece{{4 * c[0], 4 * c[1], 4 * c[2]}, {4 * c[0] + 4, 4 * c[1] + 4, 4 * c[2] + 4}, static_cast<int>(axis), side};
+    piece.low[axis] = piece.high[axis] = 4 * (c[axis] + side);
+    face.level = static_cast<std::uint8_t>(mesh_.levelOf(level).finest());
+    fill(face, level, piece);
     return 1;
 }
 
-// The polygon with its low corner at low on the face's level, mid-edge vertices included.
-void LatticeMesh::Reader::fill(CellFace& face, int faceLevel, const Index3& low, int axis, int side) {
-    face.level = static_cast<std::uint8_t>(faceLevel);
-    const auto b = static_cast<std::size_t>((axis + 1) % 3), c = static_cast<std::size_t>((axis + 2) % 3);
-    constexpr std::array<std::array<int, 2>, 4> ring{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}}; // about +axis
-    const bool finer = faceLevel + 1 < mesh_.levels();
-    for (std::size_t i = 0; i < 4; ++i) {
-        const std::size_t k = side ? i : (4 - i) % 4, next = side ? (i + 1) % 4 : (7 - i) % 4;
-        Index3 v = low, mid{2 * low[0], 2 * low[1], 2 * low[2]};
-        v[b] += ring[k][0], v[c] += ring[k][1];
-        mid[b] += ring[k][0] + ring[next][0], mid[c] += ring[k][1] + ring[next][1];
-        addVertex(face, faceLevel, v, faceLevel, low, axis, side);
-        if (finer && points_[std::size_t(faceLevel) + 1].has(mid)) {
-            addVertex(face, faceLevel + 1, mid, faceLevel, low, axis, side);
+// The face in quarters, each of which belongs to one cell across; quarters of the same cell make one piece.
+int LatticeMesh::Reader::piecesAcross(int level, const Index3& c, std::size_t axis, int side) {
+    const LevelTriple& own = mesh_.levelOf(level);
+    const std::size_t b = (axis + 1) % 3, d = (axis + 2) % 3;
+    int count = 0;
+    unsigned covered = 0;
+    for (int q = 0; q < 4; ++q) {
+        if (covered >> q & 1) continue;
+        Index3 at{2 * c[0], 2 * c[1], 2 * c[2]};
+        at[axis] += side ? 2 : -1;
+        at[b] += q & 1, at[d] += q >> 1;
+        for (std::size_t m : touching_[static_cast<std::size_t>(level)]) {
+            const LevelTriple& theirs = mesh_.levelOf(static_cast<int>(m));
+            const Index3 n = ancestor(at, halvedLevel(own), theirs);
+            if (!hasCell(static_cast<int>(m), n)) continue;
+            const int nb = theirs[b] > own[b] ? 1 : 2, nd = theirs[d] > own[d] ? 1 : 2; // quarters covered
+            for (int j = 0; j < nd; ++j) {
+                for (int i = 0; i < nb; ++i) covered |= 1u << (q + i + 2 * j);
+            }
+            Piece piece{{4 * c[0], 4 * c[1], 4 * c[2]}, {}, static_cast<int>(axis), side};
+            piece.low[axis] += 4 * side;
+            piece.low[b] += 2 * (q & 1), piece.low[d] += 2 * (q >> 1);
+            piece.high = piece.low;
+            piece.high[b] += 2 * nb, piece.high[d] += 2 * nd;
+            CellFace& face = found_[static_cast<std::size_t>(count++)];
+            face = CellFace{};
+            face.other = kept_[m].rank(n);
+            face.kind = face.other >= 0 ? FaceKind::internal : FaceKind::front;
+            face.level = static_cast<std::uint8_t>(std::max(own.finest(), theirs.finest()));
+            fill(face, level, piece);
+            break;
         }
+    }
+    return count;
+}
+
+// The polygon about +axis or -axis, with the vertices on the middle of its edges.
+void LatticeMesh::Reader::fill(CellFace& face, int level, const Piece& piece) {
+    const auto b = static_cast<std::size_t>((piece.axis + 1) % 3), d = static_cast<std::size_t>((piece.axis + 2) % 3);
+    constexpr std::array<std::array<int, 2>, 4> ring{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}}; // about +axis
+    const auto corner = [&](std::size_t k) {
+        Index3 v = piece.low;
+        if (ring[k][0]) v[b] = piece.high[b];
+        if (ring[k][1]) v[d] = piece.high[d];
+        return v;
+    };
+    for (std::size_t i = 0; i < 4; ++i) {
+        const std::size_t k = piece.side ? i : (4 - i) % 4, next = piece.side ? (i + 1) % 4 : (7 - i) % 4;
+        const Index3 v = corner(k), w = corner(next);
+        addVertex(face, level, piece, v);
+        addVertex(face, level, piece, {(v[0] + w[0]) / 2, (v[1] + w[1]) / 2, (v[2] + w[2]) / 2});
     }
 }
 
-void LatticeMesh::Reader::addVertex(CellFace& face, int level, const Index3& at, int faceLevel, const Index3& low,
-                                    int axis, int side) {
-    Index3 v = at;
-    const Index3 fine{2 * v[0], 2 * v[1], 2 * v[2]};
-    std::int64_t point = -1;
-    if (level + 1 < mesh_.levels()) point = points_[std::size_t(level) + 1].rank(fine);
-    if (point >= 0) {
-        v = fine;
-        ++level;
-    } else {
-        point = points_[std::size_t(level)].rank(v);
+// The number of the point at a place in quarters of a cell's edges, or -1. Cells that have it for a corner touch the
+// cell, so their finest level is at most one away from the cell's.
+std::int64_t LatticeMesh::Reader::findPoint(const Index3& at, const LevelTriple& quarter, int finest, int& pointLevel, Index3& v) {
+    for (int l = std::min(finest + 1, mesh_.pointLevels() - 1); l >= std::max(finest - 1, 0); --l) {
+        bool whole = true;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const int shift = l - quarter[a];
+            whole = whole && (shift >= 0 || (at[a] & ((1 << -shift) - 1)) == 0);
+            v[a] = shift >= 0 ? at[a] << shift : at[a] >> -shift;
+        }
+        if (!whole) continue;
+        if (const std::int64_t point = points_[static_cast<std::size_t>(l)].rank(v); point >= 0) {
+            pointLevel = l;
+            return point;
+        }
     }
-    const std::int64_t slot = frontPoints_[std::size_t(level)].rank(v);
+    return -1;
+}
+
+void LatticeMesh::Reader::addVertex(CellFace& face, int level, const Piece& piece, const Index3& at) {
+    const LevelTriple& own = mesh_.levelOf(level);
+    int pointLevel = 0;
+    Index3 v{};
+    const std::int64_t point = findPoint(at, halvedLevel(halvedLevel(own)), own.finest(), pointLevel, v);
+    if (point < 0) return; // no vertex on the middle of this edge
+    const std::int64_t slot = frontPoints_[static_cast<std::size_t>(pointLevel)].rank(v);
     const std::size_t i = face.vertices++;
     face.points[i] = static_cast<std::int32_t>(point);
     if (slot < 0) return;
     // The octant of the cell beside the vertex, on the face's side of it.
-    const int shift = level - faceLevel;
-    int octant = side ? 0 : 1 << axis;
+    const int axis = piece.axis;
+    int octant = piece.side ? 0 : 1 << axis;
     for (int k = 1; k < 3; ++k) {
         const auto a = static_cast<std::size_t>((axis + k) % 3);
-        if (v[a] != (low[a] + 1) << shift) octant |= 1 << a;
+        if (at[a] != piece.high[a]) octant |= 1 << a;
     }
     const FrontPoint& front = mesh_.front_[static_cast<std::size_t>(slot)];
     const VertexPattern& pattern = vertexPattern(front.pattern);

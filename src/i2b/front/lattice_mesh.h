@@ -1,12 +1,13 @@
 // The conforming polyhedral mesh that kept cells make, without storing it: numbers for cells, points and fans from
 // ranked masks (bits per cell), and the polygons of any cell on request.
 //
-// Where a coarse cell meets finer ones its face is the set of the finer faces, and every polygon carries the vertex on
-// the middle of its edge wherever any cell has a corner there. A lattice vertex whose kept cells fall into several
+// Where cells of different levels meet, the faces are the pieces that their own faces have in common (each may be the
+// finer one along one axis), and every polygon carries the vertex on the middle of its edge wherever any cell has a
+// corner there. A lattice vertex whose kept cells fall into several
 // face-connected components is one point per component.
 #pragma once
 #include "i2b/carve/kept_cells.h"
-#include "i2b/carve/vertex_patterns.h"
+#include "i2b/carve/vertices.h"
 #include "i2b/grid/ranked_mask.h"
 
 namespace i2b {
@@ -17,7 +18,7 @@ enum class FaceKind : std::uint8_t { internal, front, side };
 struct CellFace {
     FaceKind kind = FaceKind::internal;
     std::uint8_t side = 0;                // domain side 2 * axis (+ 1 for the high one), where kind is side
-    std::uint8_t level = 0;               // of the smaller of the two cells: the face's size
+    std::uint8_t level = 0;               // finest over the axes, of the finer of the two cells: the face's size
     std::uint8_t vertices = 0;            // 4 to 8
     std::int64_t other = -1;              // cell number across, where kind is internal
     std::array<std::int32_t, 8> points{}; // core point numbers
@@ -30,7 +31,9 @@ class LatticeMesh {
     LatticeMesh(const CellGrid& grid, const KeptCells& kept);
 
     const Lattice& lattice() const { return grid_.lattice; }
-    int levels() const { return static_cast<int>(cells_.size()); }
+    int levels() const { return static_cast<int>(cells_.size()); }       // of cells: as in CellGrid
+    int pointLevels() const { return static_cast<int>(points_.size()); } // of points: as activeVertices() has them
+    const LevelTriple& levelOf(int level) const { return grid_.levels[static_cast<std::size_t>(level)].level; }
     std::int64_t cellCount() const { return cellCount_; }
     std::int64_t pointCount() const { return pointCount_ + extraPoints_; } // core points
     std::int64_t fanCount() const { return fanCount_; }
@@ -63,32 +66,38 @@ class LatticeMesh {
             }
         }
         std::int64_t cell(int level, const Index3& c) { return kept_[std::size_t(level)].rank(c); }
-        // Kept cells around a vertex (given on its own level): calls visit(level, cell) up to eight times, with repeats.
+        // Kept cells around a point (of its own level): calls visit(level, cell) up to eight times, with repeats.
         template <class Visit>
-        void cellsAround(int level, const Index3& v, const Visit& visit) {
-            for (int o = 0; o < 8; ++o) {
-                const Index3 c{v[0] - 1 + (o & 1), v[1] - 1 + (o >> 1 & 1), v[2] - 1 + (o >> 2)};
-                if (c[0] < 0 || c[1] < 0 || c[2] < 0) continue;
-                if (kept_[std::size_t(level)].has(c)) {
-                    visit(level, c);
-                } else if (level > 0 && kept_[std::size_t(level) - 1].has({c[0] >> 1, c[1] >> 1, c[2] >> 1})) {
-                    visit(level - 1, Index3{c[0] >> 1, c[1] >> 1, c[2] >> 1});
-                }
+        void cellsAround(int pointLevel, const Index3& v, const Visit& visit) {
+            for (const Octant& o : lookup_.view(pointLevel, v).octants) {
+                if (o.kept) visit(static_cast<int>(o.level), o.cell);
             }
         }
 
       private:
+        // A face before it is a polygon, in quarters of the cell's edges.
+        struct Piece {
+            Index3 low{}, high{}; // equal along axis
+            int axis = 0, side = 0;
+        };
         int neighbours(int level, const Index3& c, int direction); // fills found_
-        void fill(CellFace& face, int faceLevel, const Index3& low, int axis, int side);
-        void addVertex(CellFace& face, int level, const Index3& v, int faceLevel, const Index3& low, int axis, int side);
+        int piecesAcross(int level, const Index3& c, std::size_t axis, int side);
+        bool hasCell(int level, const Index3& c) { return cells_[static_cast<std::size_t>(level)].isValueOn(toCoord(c)); }
+        void fill(CellFace& face, int level, const Piece& piece);
+        void addVertex(CellFace& face, int level, const Piece& piece, const Index3& at);
+        std::int64_t findPoint(const Index3& at, const LevelTriple& quarter, int finest, int& pointLevel, Index3& v);
+
         const LatticeMesh& mesh_;
+        std::vector<std::vector<std::size_t>> touching_;
         std::vector<RankedMask::Reader> kept_, points_, frontPoints_;
         std::vector<MaskReader> cells_;
+        VertexLookup lookup_;
         std::array<CellFace, 4> found_{};
     };
 
   private:
     const CellGrid& grid_;
+    const KeptCells& kept_;
     std::vector<RankedMask> cells_, points_, frontPoints_;
     std::vector<FrontPoint> front_;
     std::int64_t cellCount_ = 0, pointCount_ = 0, extraPoints_ = 0, fanCount_ = 0;
