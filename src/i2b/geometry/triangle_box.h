@@ -33,6 +33,7 @@ class TriangleBoxTest {
     const Box& bounds() const { return bounds_; }
 
   private:
+    friend class TriangleCells;
     using Pair = double __attribute__((vector_size(16)));
     // Lines across one coordinate plane (u, v), one per edge, the last repeated to fill two pairs: the
     // triangle lies within low <= nu u + nv v <= high, widened by the error bound.
@@ -46,6 +47,13 @@ class TriangleBoxTest {
                          const double (&ev)[3]);
     static bool narrow(double n, double restMin, double restMax, double low, double high, double& first,
                        double& last);
+    const Lines& linesAcross(std::size_t axis) const { return axis == 0 ? yz_ : axis == 1 ? zx_ : xy_; }
+    // The three lines of the plane across the axis as bounds on one of its coordinates, where the other lies in lo .. hi
+    // (about the origin; `first`: it is the first of the two). False if they miss.
+    bool across(std::size_t axis, bool first, double lo, double hi, double& from, double& to) const;
+    // From places about the origin to the given coordinates, widened by one rounding of their size, within the bounds.
+    // False if nothing is left.
+    bool place(std::size_t axis, double& from, double& to) const;
 
     Box bounds_;
     Vec3 origin_, normal_, absNormal_;
@@ -136,22 +144,31 @@ inline bool TriangleBoxTest::row(double yLo, double yHi, double zLo, double zHi,
     const double z0 = std::max(zLo, bounds_.lo.z) - origin_.z, z1 = std::min(zHi, bounds_.hi.z) - origin_.z;
     const double cy = (y0 + y1) * 0.5, hy = (y1 - y0) * 0.5, cz = (z0 + z1) * 0.5, hz = (z1 - z0) * 0.5;
     if (yz_.miss(cy, cz, hy, hz)) return false;
-    double from = -std::numeric_limits<double>::infinity(), to = -from;
+    first = -std::numeric_limits<double>::infinity(), last = -first;
     const double c = normal_.y * cy + normal_.z * cz, r = absNormal_.y * hy + absNormal_.z * hz;
-    if (!narrow(normal_.x, c - r, c + r, -planeError_, planeError_, from, to)) return false;
+    return narrow(normal_.x, c - r, c + r, -planeError_, planeError_, first, last) && across(2, false, y0, y1, first, last) &&
+           across(1, true, z0, z1, first, last) && place(0, first, last);
+}
+
+inline bool TriangleBoxTest::across(std::size_t axis, bool first, double lo, double hi, double& from, double& to) const {
+    const Lines& lines = linesAcross(axis);
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t p = i / 2, k = i % 2;
-        const double cu = xy_.nv[p][k] * cy, ru = xy_.absV[p][k] * hy;
-        if (!narrow(xy_.nu[p][k], cu - ru, cu + ru, xy_.low[p][k], xy_.high[p][k], from, to)) return false;
-        const double cv = zx_.nu[p][k] * cz, rv = zx_.absU[p][k] * hz;
-        if (!narrow(zx_.nv[p][k], cv - rv, cv + rv, zx_.low[p][k], zx_.high[p][k], from, to)) return false;
+        const double known = first ? lines.nu[p][k] : lines.nv[p][k], other = first ? lines.nv[p][k] : lines.nu[p][k];
+        const double a = known * lo, b = known * hi;
+        if (!narrow(other, std::min(a, b), std::max(a, b), lines.low[p][k], lines.high[p][k], from, to)) return false;
     }
-    // Back to the given coordinates: one rounding of their size.
-    first = origin_.x + from;
-    last = origin_.x + to;
-    first = std::max(first - 2 * eps * std::abs(first), bounds_.lo.x);
-    last = std::min(last + 2 * eps * std::abs(last), bounds_.hi.x);
-    return first <= bounds_.hi.x && last >= bounds_.lo.x;
+    return true;
+}
+
+inline bool TriangleBoxTest::place(std::size_t axis, double& from, double& to) const {
+    const int a = static_cast<int>(axis);
+    from = std::max(origin_[a] + from, bounds_.lo[a]);
+    to = std::min(origin_[a] + to, bounds_.hi[a]);
+    // So that a place that is on a plane between two cells lies, after rounding, in both.
+    from -= 2 * eps * std::abs(from) + std::numeric_limits<double>::min();
+    to += 2 * eps * std::abs(to);
+    return from <= bounds_.hi[a] && to >= bounds_.lo[a];
 }
 
 } // namespace i2b

@@ -1,5 +1,6 @@
 #include "i2b/grid/build.h"
 #include "i2b/core/checksum.h"
+#include "i2b/grid/octree.h"
 #include "i2b/grid/resample.h"
 #include "i2b/grid/splits.h"
 #include <fmt/format.h>
@@ -8,20 +9,28 @@ namespace i2b {
 
 namespace {
 
+// Parents of what is wanted or split at the level below, and of the buffer around it.
+Mask::Ptr splitAbove(const Mask& wanted, const Mask& split, int buffer, const Lattice& lattice, int level) {
+    const Index3 size = lattice.cells(level);
+    if (buffer <= 8) return parentsAround(wanted, split, buffer, size);
+    const Mask::Ptr grown = dilated(*unionOf(wanted, split), buffer - 8, lattice.cells(level + 1));
+    return parentsAround(*grown, Mask(false), 8, size);
+}
+
 // All axes together: an octree, one mask a level.
 std::vector<CellLevel> octreeLeaves(const SizeField& field, const std::vector<Mask::Ptr>& wanted) {
     const Lattice& lattice = field.lattice;
     const auto levels = static_cast<std::size_t>(lattice.maxLevel) + 1;
-    std::vector<Mask::Ptr> refined(levels); // cells of level l that are split
-    refined[levels - 1] = std::make_shared<Mask>(false);
+    std::vector<Mask::Ptr> split(levels); // cells of level l that are split
+    split[levels - 1] = std::make_shared<Mask>(false);
     for (std::size_t l = levels - 1; l-- > 0;) {
-        const Mask::Ptr below = unionOf(*wanted[l + 1], *refined[l + 1]);
-        refined[l] = parentsOf(*dilated(*below, field.bufferCells, lattice.cells(static_cast<int>(l) + 1)));
+        split[l] = splitAbove(*wanted[l + 1], *split[l + 1], field.bufferCells, lattice, static_cast<int>(l));
     }
     std::vector<CellLevel> leaves;
     for (std::size_t l = 0; l < levels; ++l) {
-        const Mask::Ptr all = l == 0 ? filledBox(lattice.count) : childrenOf(*refined[l - 1]);
-        leaves.push_back({allAxes(static_cast<int>(l)), differenceOf(*all, *refined[l])});
+        const Mask::Ptr cells = l == 0 ? boxLess(lattice.count, *split[0]) : childrenLess(*split[l - 1], *split[l]);
+        leaves.push_back({allAxes(static_cast<int>(l)), cells});
+        if (l > 0) split[l - 1].reset(); // its memory is what the next level needs
     }
     return leaves;
 }
