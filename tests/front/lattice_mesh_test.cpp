@@ -3,8 +3,10 @@
 // places.
 #include "carve/kept_checks.h"
 #include "i2b/front/lattice_mesh.h"
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <map>
+#include <random>
 
 namespace i2b::test {
 namespace {
@@ -19,23 +21,95 @@ std::vector<std::int32_t> rotated(std::vector<std::int32_t> polygon) {
     return polygon;
 }
 
-class RandomMesh : public testing::TestWithParam<unsigned> {
-  protected:
-    // visit(rank, level, cell, face) for every face of every kept cell.
-    template <class Visit>
-    static void forFaces(const LatticeMesh& mesh, const Visit& visit) {
-        LatticeMesh::Reader reader(mesh);
-        for (int l = 0; l < mesh.levels(); ++l) {
-            for (std::size_t n = 0; n < mesh.cells(l).leafCount(); ++n) {
-                std::int64_t rank = mesh.cells(l).leafFirst(n);
-                const MaskLeaf& leaf = mesh.cells(l).leaf(n);
-                for (auto it = leaf.cbeginValueOn(); it; ++it, ++rank) {
-                    const Index3 c = toIndex(it.getCoord());
-                    reader.faces(l, c, [&](const CellFace& face) { visit(rank, l, c, face); });
-                }
+// visit(rank, level, cell, face) for every face of every kept cell.
+template <class Visit>
+void forFaces(const LatticeMesh& mesh, const Visit& visit) {
+    LatticeMesh::Reader reader(mesh);
+    for (int l = 0; l < mesh.levels(); ++l) {
+        for (std::size_t n = 0; n < mesh.cells(l).leafCount(); ++n) {
+            std::int64_t rank = mesh.cells(l).leafFirst(n);
+            const MaskLeaf& leaf = mesh.cells(l).leaf(n);
+            for (auto it = leaf.cbeginValueOn(); it; ++it, ++rank) {
+                const Index3 c = toIndex(it.getCoord());
+                reader.faces(l, c, [&](const CellFace& face) { visit(rank, l, c, face); });
             }
         }
     }
+}
+
+// Every internal face is seen alike from both sides, every cell is closed, edge by edge, and has its volume.
+class Conformity {
+  public:
+    explicit Conformity(const LatticeMesh& mesh)
+        : mesh_(mesh), points_(mesh.latticePoints()), edges_(static_cast<std::size_t>(mesh.cellCount())),
+          volume_(edges_.size(), 0), expected_(edges_.size(), 0), area_(edges_.size()), used_(points_.size()) {
+        forFaces(mesh, [&](std::int64_t rank, int level, const Index3& cell, const CellFace& face) { add(rank, level, cell, face); });
+        compare();
+    }
+    const std::string& fault() const { return fault_; }
+
+  private:
+    void note(bool good, const char* what, std::int64_t cell) {
+        if (!good && fault_.empty()) fault_ = fmt::format("{} (cell {})", what, cell);
+    }
+    void add(std::int64_t rank, int level, const Index3& cell, const CellFace& face) {
+        std::vector<std::int32_t> p = polygonOf(face);
+        note(p.size() >= 4, "a polygon of less than four points", rank);
+        const auto r = static_cast<std::size_t>(rank);
+        const Box box = mesh_.lattice().cellBox(mesh_.levelOf(level), cell);
+        expected_[r] = box.extent().x * box.extent().y * box.extent().z;
+        Vec3 sum;
+        for (std::size_t i = 0; i < p.size(); ++i) {
+            const std::int32_t a = p[i], b = p[(i + 1) % p.size()];
+            if (a < 0 || static_cast<std::size_t>(a) >= points_.size()) return note(false, "no such point", rank);
+            note(box.contains(points_[std::size_t(a)]), "a point outside its cell", rank);
+            used_[std::size_t(a)] = true;
+            ++edges_[r][{a, b}];
+            sum += cross(points_[std::size_t(a)] - box.lo, points_[std::size_t(b)] - box.lo) * 0.5;
+        }
+        area_[r] += sum;
+        const double part = dot(sum, points_[std::size_t(p[0])] - box.centre());
+        volume_[r] += part / 3;
+        note(part > 0, "a normal points inwards", rank);
+        if (face.kind == FaceKind::internal) {
+            if (face.other < 0 || face.other >= mesh_.cellCount() || face.other == rank) return note(false, "no such neighbour", rank);
+            if (face.other < rank) std::reverse(p.begin(), p.end());
+            shared_[std::minmax(rank, face.other)].push_back(rotated(p));
+        } else if (face.kind == FaceKind::side) {
+            const Box domain = mesh_.lattice().domain();
+            const double plane = face.side % 2 ? domain.hi[face.side / 2] : domain.lo[face.side / 2];
+            for (std::int32_t a : p) note(points_[std::size_t(a)][face.side / 2] == plane, "a side off its plane", rank);
+        }
+    }
+    void compare() {
+        for (auto& [pair, seen] : shared_) { // two cells may share several faces
+            std::sort(seen.begin(), seen.end());
+            bool alike = seen.size() % 2 == 0;
+            for (std::size_t i = 0; alike && i < seen.size(); i += 2) alike = seen[i] == seen[i + 1];
+            note(alike && seen.size() == 2, "a face that its two cells see in different ways", pair.first);
+        }
+        for (std::size_t i = 0; i < edges_.size(); ++i) {
+            note(std::abs(volume_[i] - expected_[i]) < 1e-12 && norm(area_[i]) < 1e-12, "a volume that is wrong", std::int64_t(i));
+            for (const auto& [edge, n] : edges_[i]) {
+                note(n == 1, "an edge that runs twice the same way", std::int64_t(i));
+                note(edges_[i].count({edge.second, edge.first}) == 1, "an open cell", std::int64_t(i));
+            }
+        }
+        note(std::count(used_.begin(), used_.end(), false) == 0, "points without a face", -1);
+    }
+
+    const LatticeMesh& mesh_;
+    std::vector<Vec3> points_;
+    std::map<std::pair<std::int64_t, std::int64_t>, std::vector<std::vector<std::int32_t>>> shared_;
+    std::vector<std::map<std::pair<std::int32_t, std::int32_t>, int>> edges_;
+    std::vector<double> volume_, expected_;
+    std::vector<Vec3> area_;
+    std::vector<bool> used_;
+    std::string fault_;
+};
+
+class RandomMesh : public testing::TestWithParam<unsigned> {
+  protected:
     static CarvedAtRandom make(unsigned seed) {
         return {seed,
                 {5, 6, 4},
@@ -50,61 +124,54 @@ TEST_P(RandomMesh, FacesMatchAndCellsClose) {
     for (unsigned seed = 20 * GetParam(); seed < 20 * GetParam() + 20; ++seed) {
         const CarvedAtRandom c = make(seed);
         const LatticeMesh mesh(c.grid, c.kept);
-        const std::vector<Vec3> points = mesh.latticePoints();
         ASSERT_EQ(mesh.cellCount(), static_cast<std::int64_t>(c.kept.cellCount()));
-        const auto cells = static_cast<std::size_t>(mesh.cellCount());
-        std::map<std::pair<std::int64_t, std::int64_t>, std::vector<std::vector<std::int32_t>>> shared;
-        std::vector<std::map<std::pair<std::int32_t, std::int32_t>, int>> edges(cells);
-        std::vector<double> volume(cells, 0), expected(cells, 0);
-        std::vector<Vec3> area(cells);
-        std::vector<bool> used(points.size());
-        forFaces(mesh, [&](std::int64_t rank, int level, const Index3& cell, const CellFace& face) {
-            std::vector<std::int32_t> p = polygonOf(face);
-            ASSERT_GE(p.size(), 4u);
-            const auto r = static_cast<std::size_t>(rank);
-            const Box box = mesh.lattice().cellBox(mesh.levelOf(level), cell);
-            expected[r] = box.extent().x * box.extent().y * box.extent().z;
-            Vec3 sum;
-            for (std::size_t i = 0; i < p.size(); ++i) {
-                const std::int32_t a = p[i], b = p[(i + 1) % p.size()];
-                ASSERT_TRUE(a >= 0 && static_cast<std::size_t>(a) < points.size());
-                const Vec3& x = points[static_cast<std::size_t>(a)];
-                ASSERT_TRUE(box.contains(x)) << "seed " << seed;
-                used[static_cast<std::size_t>(a)] = true;
-                ++edges[r][{a, b}];
-                sum += cross(x - box.lo, points[static_cast<std::size_t>(b)] - box.lo) * 0.5;
-            }
-            area[r] += sum;
-            volume[r] += dot(sum, points[static_cast<std::size_t>(p[0])] - box.centre()) / 3;
-            EXPECT_GT(dot(sum, points[static_cast<std::size_t>(p[0])] - box.centre()), 0)
-                << "a normal points inwards";
-            if (face.kind == FaceKind::internal) {
-                ASSERT_TRUE(face.other >= 0 && face.other < mesh.cellCount() && face.other != rank);
-                if (face.other < rank) std::reverse(p.begin(), p.end());
-                shared[std::minmax(rank, face.other)].push_back(rotated(p));
-            } else if (face.kind == FaceKind::side) {
-                const double plane = face.side % 2 ? mesh.lattice().domain().hi[face.side / 2]
-                                                   : mesh.lattice().domain().lo[face.side / 2];
-                for (std::int32_t a : p) EXPECT_EQ(points[static_cast<std::size_t>(a)][face.side / 2], plane);
-            }
-        });
-        for (const auto& [pair, seen] : shared) {
-            ASSERT_EQ(seen.size(), 2u)
-                << "seed " << seed << ": a face of cells " << pair.first << " and " << pair.second;
-            ASSERT_EQ(seen[0], seen[1])
-                << "seed " << seed << ": a face of cells " << pair.first << " and " << pair.second;
+        EXPECT_EQ(Conformity(mesh).fault(), "") << "seed " << seed;
+    }
+}
+
+// Base cells of 2^n grids, each split along axes of its own choice: bit a of splits[i] splits base cell i along axis a.
+CellGrid splitByHand(const Index3& count, const std::vector<unsigned>& splits) {
+    CellGrid grid;
+    grid.lattice.base = {1, 0.5, 0.75};
+    grid.lattice.count = count;
+    grid.lattice.maxLevel = 1;
+    for (unsigned t = 0; t < 8; ++t) {
+        const LevelTriple level{std::uint8_t(t & 1), std::uint8_t(t >> 1 & 1), std::uint8_t(t >> 2)};
+        auto base = std::make_shared<Mask>(false);
+        for (std::size_t i = 0; i < splits.size(); ++i) {
+            const auto n = static_cast<std::int32_t>(i);
+            if (splits[i] == t) base->setValueOn({n % count[0], n / count[0] % count[1], n / count[0] / count[1]});
         }
-        for (std::size_t i = 0; i < cells; ++i) {
-            ASSERT_NEAR(volume[i], expected[i], 1e-12);
-            ASSERT_LT(norm(area[i]), 1e-12);
-            for (const auto& [edge, n] : edges[i]) {
-                ASSERT_EQ(n, 1) << "seed " << seed << " cell " << i << ": an edge runs twice the same way";
-                ASSERT_EQ(edges[i].count({edge.second, edge.first}), 1u)
-                    << "seed " << seed << " cell " << i << " is open";
-            }
+        if (!isEmpty(*base)) grid.levels.push_back({level, overlapping(*base, allAxes(0), level)});
+    }
+    return grid;
+}
+
+std::string faultOf(const CellGrid& grid) {
+    if (const std::string fault = grid.validate(); !fault.empty()) return fault;
+    KeptCells all;
+    for (const CellLevel& level : grid.levels) all.levels.push_back(level.cells);
+    return Conformity(LatticeMesh(grid, all)).fault();
+}
+
+// All 64 ways for two neighbours to be split, across each axis: each may be the finer one along another axis.
+TEST(LatticeMesh, EveryPairOfNeighboursConforms) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        Index3 count{1, 1, 1};
+        count[axis] = 2;
+        for (unsigned pair = 0; pair < 64; ++pair) {
+            EXPECT_EQ(faultOf(splitByHand(count, {pair & 7, pair >> 3})), "") << "axis " << axis << ", pair " << pair;
         }
-        EXPECT_EQ(std::count(used.begin(), used.end(), false), 0)
-            << "seed " << seed << ": points without a face";
+    }
+}
+
+// Eight cells around a vertex, split at random: edges carry what hangs on them from any side.
+TEST(LatticeMesh, RandomSplitsAroundAVertexConform) {
+    std::mt19937 random(5);
+    for (int i = 0; i < 300; ++i) {
+        std::vector<unsigned> splits(8);
+        for (unsigned& s : splits) s = random() % 8;
+        EXPECT_EQ(faultOf(splitByHand({2, 2, 2}, splits)), "") << "number " << i;
     }
 }
 

@@ -158,9 +158,9 @@ void LatticeMesh::Reader::fill(CellFace& face, int level, const Piece& piece) {
     }
 }
 
-// The number of the point at a place in quarters of a cell's edges, or -1. Cells that have it for a corner touch the
-// cell, so their finest level is at most one away from the cell's.
-std::int64_t LatticeMesh::Reader::findPoint(const Index3& at, const LevelTriple& quarter, int finest, int& pointLevel, Index3& v) {
+// Cells that have a point for a corner touch the cell, so their finest level is at most one away from the cell's.
+LatticeMesh::Reader::Spot LatticeMesh::Reader::findPoint(const Index3& at, const LevelTriple& quarter, int finest) {
+    Index3 v{};
     for (int l = std::min(finest + 1, mesh_.pointLevels() - 1); l >= std::max(finest - 1, 0); --l) {
         bool whole = true;
         for (std::size_t a = 0; a < 3; ++a) {
@@ -170,23 +170,27 @@ std::int64_t LatticeMesh::Reader::findPoint(const Index3& at, const LevelTriple&
         }
         if (!whole) continue;
         if (const std::int64_t point = points_[static_cast<std::size_t>(l)].rank(v); point >= 0) {
-            pointLevel = l;
-            return point;
+            return {cell_, static_cast<std::int32_t>(point), frontPoints_[static_cast<std::size_t>(l)].rank(v)};
         }
     }
-    return -1;
+    return {cell_, -1, -1};
+}
+
+const LatticeMesh::Reader::Spot& LatticeMesh::Reader::spotAt(int level, const Index3& at) {
+    Spot& spot = spots_[static_cast<std::size_t>(25 * (at[0] - origin_[0]) + 5 * (at[1] - origin_[1]) + at[2] - origin_[2])];
+    if (spot.cell != cell_) {
+        const LevelTriple& own = mesh_.levelOf(level);
+        spot = findPoint(at, halvedLevel(halvedLevel(own)), own.finest());
+    }
+    return spot;
 }
 
 void LatticeMesh::Reader::addVertex(CellFace& face, int level, const Piece& piece, const Index3& at) {
-    const LevelTriple& own = mesh_.levelOf(level);
-    int pointLevel = 0;
-    Index3 v{};
-    const std::int64_t point = findPoint(at, halvedLevel(halvedLevel(own)), own.finest(), pointLevel, v);
-    if (point < 0) return; // no vertex on the middle of this edge
-    const std::int64_t slot = frontPoints_[static_cast<std::size_t>(pointLevel)].rank(v);
+    const Spot spot = spotAt(level, at);
+    if (spot.point < 0) return; // no vertex on the middle of this edge
     const std::size_t i = face.vertices++;
-    face.points[i] = static_cast<std::int32_t>(point);
-    if (slot < 0) return;
+    face.points[i] = spot.point;
+    if (spot.front < 0) return;
     // The octant of the cell beside the vertex, on the face's side of it.
     const int axis = piece.axis;
     int octant = piece.side ? 0 : 1 << axis;
@@ -194,7 +198,7 @@ void LatticeMesh::Reader::addVertex(CellFace& face, int level, const Piece& piec
         const auto a = static_cast<std::size_t>((axis + k) % 3);
         if (at[a] != piece.high[a]) octant |= 1 << a;
     }
-    const FrontPoint& front = mesh_.front_[static_cast<std::size_t>(slot)];
+    const FrontPoint& front = mesh_.front_[static_cast<std::size_t>(spot.front)];
     const VertexPattern& pattern = vertexPattern(front.pattern);
     const std::uint8_t component = pattern.component[static_cast<std::size_t>(octant)];
     if (component > 0 && component != noFan) face.points[i] = front.firstExtra + component - 1;

@@ -60,6 +60,8 @@ class LatticeMesh {
         // visit(const CellFace&) for every face of the kept cell, in fixed order.
         template <class Visit>
         void faces(int level, const Index3& c, const Visit& visit) {
+            ++cell_;
+            origin_ = {4 * c[0], 4 * c[1], 4 * c[2]};
             for (int direction = 0; direction < 6; ++direction) {
                 const int n = neighbours(level, c, direction);
                 for (int i = 0; i < n; ++i) visit(found_[static_cast<std::size_t>(i)]);
@@ -85,7 +87,14 @@ class LatticeMesh {
         bool hasCell(int level, const Index3& c) { return cells_[static_cast<std::size_t>(level)].isValueOn(toCoord(c)); }
         void fill(CellFace& face, int level, const Piece& piece);
         void addVertex(CellFace& face, int level, const Piece& piece, const Index3& at);
-        std::int64_t findPoint(const Index3& at, const LevelTriple& quarter, int finest, int& pointLevel, Index3& v);
+        // What is at a place in quarters of a cell's edges, seen from the cell: looked up once, used by several faces.
+        struct Spot {
+            std::uint32_t cell = 0;   // running number of the cell it was looked up for
+            std::int32_t point = -1;  // -1: no point there
+            std::int64_t front = -1;  // index of its FrontPoint; -1: not on the front
+        };
+        const Spot& spotAt(int level, const Index3& at);
+        Spot findPoint(const Index3& at, const LevelTriple& quarter, int finest);
 
         const LatticeMesh& mesh_;
         std::vector<std::vector<std::size_t>> touching_;
@@ -93,6 +102,9 @@ class LatticeMesh {
         std::vector<MaskReader> cells_;
         VertexLookup lookup_;
         std::array<CellFace, 4> found_{};
+        std::array<Spot, 125> spots_{};
+        std::uint32_t cell_ = 0;
+        Index3 origin_{};        // of the cell, in quarters of its edges
     };
 
   private:
