@@ -50,7 +50,7 @@ TEST(ReportWrite, HasTheContractsKeys) {
     EXPECT_THAT(keys(json["program"]), testing::ElementsAre("name", "version"));
     EXPECT_THAT(keys(json["geometry"]), testing::ElementsAre("files", "triangles", "parts"));
     EXPECT_THAT(keys(json["sizes"]), testing::ElementsAre("surface", "min", "max", "levels"));
-    EXPECT_THAT(keys(json["stages"][0]), testing::ElementsAre("name", "seconds", "items"));
+    EXPECT_THAT(keys(json["stages"][0]), testing::ElementsAre("name", "seconds", "items", "rss_bytes", "peak_rss_bytes"));
     EXPECT_THAT(keys(json["quality"]),
                 testing::ElementsAre("ok", "negative_volume_cells", "wrong_oriented_faces",
                                      "max_non_orthogonality", "mean_non_orthogonality", "max_skewness",

@@ -1,3 +1,4 @@
+#include "i2b/assemble/mesh_topology.h"
 #include "i2b/core/error.h"
 #include "i2b/write/ply_write.h"
 #include "i2b/write/vtu_cells.h"
@@ -99,8 +100,8 @@ PolyMesh splitEveryThirdFace(const PolyMesh& mesh) {
 // VTK wants them.
 TEST(VtuCells, RecognisesShapes) {
     const PolyMesh mesh = test::zooMesh();
-    const CellFaces faces = cellFacesOf(mesh);
-    const auto shape = [&](std::int32_t c) { return shapeOf(mesh, faces.of(c), c); };
+    const Rows faces = buildCellFaces(mesh);
+    const auto shape = [&](std::int32_t c) { return shapeOf(mesh, faces[c], c); };
     EXPECT_EQ(shape(0).type, VtkCell::hexahedron);
     EXPECT_EQ(shape(1).type, VtkCell::wedge);
     EXPECT_EQ(shape(2).type, VtkCell::pyramid);
@@ -108,7 +109,7 @@ TEST(VtuCells, RecognisesShapes) {
     EXPECT_EQ(shape(3).type, VtkCell::tetra);
     EXPECT_EQ(shape(4).type, VtkCell::polyhedron);
     std::vector<std::int32_t> points;
-    cellPoints(mesh, faces.of(4), points);
+    cellPoints(mesh, faces[4], points);
     EXPECT_EQ(points, (std::vector<std::int32_t>{0, 3, 4, 7, 12, 13, 14, 15, 16, 17}));
     // The hexahedron's base seen from inside, and the points above its own.
     const auto h = shape(0).points;

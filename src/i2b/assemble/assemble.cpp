@@ -64,6 +64,7 @@ class Assembler {
     void fill(PolyMesh& mesh);
     void wallPatches(PolyMesh& mesh);
     void cellData(PolyMesh& mesh) const;
+    std::vector<Vec3> placePoints() const;
 
     struct Chunk { // of nodes of one level, or of front faces (level -1)
         int level = -1;
@@ -277,6 +278,25 @@ void Assembler::cellData(PolyMesh& mesh) const {
     for (std::int32_t c = 0; c < mesh.cells; ++c) mesh.zones[static_cast<std::size_t>(mesh.cellRegion[static_cast<std::size_t>(c)])].cells.push_back(c);
 }
 
+// Core points where the lattice or the fit has them, then the layers' points, stack by stack.
+std::vector<Vec3> Assembler::placePoints() const {
+    const Front& front = in_.front;
+    std::vector<Vec3> points = in_.lattice.latticePoints();
+    const auto core = static_cast<std::size_t>(corePoints_), n = static_cast<std::size_t>(layers_);
+    points.resize(core + front.front.size() * n);
+    parallelFor(front.movedPoints.size(), [&](std::size_t i) {
+        points[static_cast<std::size_t>(front.movedPoints[i])] = front.movedTo[i];
+    });
+    for (std::size_t v = 0; v < front.front.size(); ++v) { // serial: fans may share a point, and then agree on it
+        points[static_cast<std::size_t>(front.corePoint[v])] = front.front[v];
+    }
+    parallelFor(front.front.size(), [&](std::size_t v) {
+        const auto& p = front.mesh.point(FrontMesh::VertexHandle(static_cast<int>(v)));
+        placeLayers(in_.layers, v, front.front[v], {p[0], p[1], p[2]}, &points[core + v * n]);
+    });
+    return points;
+}
+
 PolyMesh Assembler::run() {
     const double cells = double(coreCells_) + double(frontFaces_) * layers_;
     const double points = double(corePoints_) + double(in_.front.front.size()) * layers_;
@@ -286,10 +306,10 @@ PolyMesh Assembler::run() {
     }
     PolyMesh mesh;
     mesh.cells = static_cast<std::int32_t>(cells);
+    mesh.points = placePoints(); // first: they are resized on the way
     layOut(mesh);
     fill(mesh);
     wallPatches(mesh);
-    placePoints(in_.lattice, in_.front, in_.layers, mesh.points);
     cellData(mesh);
     return mesh;
 }
@@ -298,28 +318,12 @@ PolyMesh Assembler::run() {
 
 PolyMesh assemble(const AssembleInput& input) { return Assembler(input).run(); }
 
-void placePoints(const LatticeMesh& lattice, const Front& front, const LayerStack& layers, std::vector<Vec3>& points) {
-    if (points.empty()) {
-        points = lattice.latticePoints();
-    }
-    const auto core = static_cast<std::size_t>(lattice.pointCount());
+void placeLayers(const LayerStack& layers, std::size_t vertex, const Vec3& front, const Vec3& wall, Vec3* out) {
     const auto n = static_cast<std::size_t>(layers.count);
-    points.resize(core + front.front.size() * n);
-    parallelFor(front.movedPoints.size(), [&](std::size_t i) {
-        points[static_cast<std::size_t>(front.movedPoints[i])] = front.movedTo[i];
-    });
-    for (std::size_t v = 0; v < front.front.size(); ++v) { // serial: fans may share a point, and then agree on it
-        points[static_cast<std::size_t>(front.corePoint[v])] = front.front[v];
+    for (std::size_t k = 0; k < n; ++k) {
+        const double t = k + 1 == n ? 1.0 : static_cast<double>(layers.fraction(vertex, static_cast<int>(k)));
+        out[k] = t == 1.0 ? wall : front + (wall - front) * t;
     }
-    parallelFor(front.front.size(), [&](std::size_t v) {
-        const Vec3 f = front.front[v];
-        const auto& p = front.mesh.point(FrontMesh::VertexHandle(static_cast<int>(v)));
-        const Vec3 b{p[0], p[1], p[2]};
-        for (std::size_t k = 0; k < n; ++k) {
-            const double t = k + 1 == n ? 1.0 : static_cast<double>(layers.fraction(v, static_cast<int>(k)));
-            points[core + v * n + k] = t == 1.0 ? b : f + (b - f) * t;
-        }
-    });
 }
 
 } // namespace i2b

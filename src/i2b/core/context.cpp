@@ -1,5 +1,6 @@
 #include "i2b/core/context.h"
 #include "i2b/core/error.h"
+#include "i2b/core/memory.h"
 
 namespace i2b {
 
@@ -24,7 +25,7 @@ void Context::advance(std::uint64_t done, std::uint64_t total) {
 
 void Context::end(std::uint64_t items) {
     const double seconds = elapsed();
-    stages_.push_back({current_, seconds, items});
+    stages_.push_back({current_, seconds, items, residentBytes(), peakResidentBytes()});
     if (sink_) sink_({ProgressEvent::Kind::end, current_, items, items, seconds});
 }
 

@@ -14,6 +14,7 @@ struct StageRecord {
     std::string name;
     double seconds = 0;
     std::uint64_t items = 0; // what the stage counts: triangles, cells, faces
+    std::uint64_t rssBytes = 0, peakRssBytes = 0; // of the process: resident at the stage's end, and the most so far
 };
 
 struct ProgressEvent {

@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <fstream>
 #include <limits>
+#include <malloc.h>
 #include <string>
 #include <sys/resource.h>
+#include <unistd.h>
 
 namespace i2b {
 namespace {
@@ -27,6 +29,13 @@ std::uint64_t number(const char* path, std::uint64_t otherwise) {
 
 } // namespace
 
+std::uint64_t residentBytes() {
+    std::ifstream in("/proc/self/statm");
+    std::uint64_t all = 0, resident = 0;
+    in >> all >> resident;
+    return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
 std::uint64_t peakResidentBytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
@@ -40,6 +49,12 @@ std::uint64_t availableBytes() {
     if (limit == none) return free;
     const std::uint64_t used = number("/sys/fs/cgroup/memory.current", 0);
     return std::min(free, limit > used ? limit - used : 0);
+}
+
+void returnFreedMemory() {
+#if defined(__GLIBC__)
+    malloc_trim(0);
+#endif
 }
 
 } // namespace i2b

@@ -6,6 +6,7 @@
 #include "i2b/core/memory.h"
 #include "i2b/fit/fit.h"
 #include "i2b/front/front.h"
+#include "i2b/geometry/features.h"
 #include "i2b/grid/build.h"
 #include "i2b/grid/cut.h"
 #include "i2b/layers/layer_stack.h"
@@ -22,6 +23,7 @@ auto stage(Context& context, const char* name, const Body& body, const Count& co
     Stage timed(context, name);
     auto result = body();
     timed.items = static_cast<std::uint64_t>(count(result));
+    returnFreedMemory();
     return result;
 }
 
@@ -82,12 +84,12 @@ MeshResult generate(const Options& options, Context& context) {
     MeshResult out;
     out.cartesian = generateGrid(options, context);
     const GridResult& c = *out.cartesian;
-    const auto lattice = std::make_unique<LatticeMesh>(c.grid, c.kept);
+    auto lattice = std::make_unique<LatticeMesh>(c.grid, c.kept);
     Front front = stage(
         context, "front", [&] { return buildFront(*lattice, startThickness); },
         [](const Front& f) { return f.ownerCell.size(); });
     requireValid(front.validate(), "front");
-    out.features = stage(
+    const FeatureGraph features = stage(
         context, "features",
         [&] {
             FeatureOptions f;
@@ -97,34 +99,35 @@ MeshResult generate(const Options& options, Context& context) {
         [](const FeatureGraph& f) { return f.edges.size(); });
     stage(
         context, "fit",
-        [&] { return fitFront(front, *lattice, *c.index, out.features, options.fit, context); },
+        [&] { return fitFront(front, *lattice, *c.index, features, options.fit, context); },
         [](const FitSummary& s) { return s.wallNodes; });
     assignParts(front, *c.index);
     LayerStack layers = stage(
         context, "layers", [&] { return makeLayers(front, options.layers); },
         [&](const LayerStack& l) { return front.ownerCell.size() * static_cast<std::size_t>(l.count); });
-    const AssembleInput input{*lattice, c.kept, front, layers, c.surface.parts};
     out.mesh = stage(
-        context, "assemble", [&] { return assemble(input); }, [](const PolyMesh& m) { return m.cells; });
+        context, "assemble", [&] { return assemble({*lattice, c.kept, front, layers, c.surface.parts}); }, [](const PolyMesh& m) { return m.cells; });
     const RepairSummary repaired = stage(context, "repair", [&] { return repair(out.mesh, front, *lattice, layers, startThickness); },
                                          [](const RepairSummary& r) { return r.retracted; });
     if (repaired.remaining > 0) {
         throw Error(ErrorKind::internal, fmt::format("{} cells could not be made valid", repaired.remaining), "", "please report the case");
     }
     out.report = reportOf(c, options, context);
+    out.report.layers =
+        LayerReport{options.layers.count, layers.meanCount, layers.facesCovered, layers.thicknessFraction};
+    out.report.wallFaces = static_cast<std::int64_t>(front.ownerCell.size());
+    front = {}, layers = {}; // from here on the mesh speaks for itself
+    lattice.reset();
     out.report.quality = stage(
         context, "quality", [&] { return measureQuality(out.mesh); },
         [](const QualityReport& q) { return q.cells; });
     out.report.fit = stage(
-        context, "fit quality", [&] { return measureFit(out.mesh, *c.index, out.features); },
+        context, "fit quality", [&] { return measureFit(out.mesh, *c.index, features); },
         [](const FitReport& f) { return f.wallNodes; });
     out.report.stages = context.stages();
-    out.report.layers =
-        LayerReport{options.layers.count, layers.meanCount, layers.facesCovered, layers.thicknessFraction};
     out.report.cells = out.mesh.cells;
     out.report.faces = out.mesh.faces();
     out.report.points = static_cast<std::int64_t>(out.mesh.points.size());
-    out.report.wallFaces = static_cast<std::int64_t>(front.ownerCell.size());
     out.report.patches = out.mesh.patches;
     Checksum sum;
     sum.add(out.mesh.checksum());

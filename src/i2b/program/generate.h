@@ -4,7 +4,6 @@
 #include "i2b/assemble/poly_mesh.h"
 #include "i2b/carve/kept_cells.h"
 #include "i2b/core/context.h"
-#include "i2b/geometry/features.h"
 #include "i2b/geometry/read.h"
 #include "i2b/geometry/surface_index.h"
 #include "i2b/options.h"
@@ -28,7 +27,6 @@ struct GridResult {
 
 struct MeshResult {
     std::unique_ptr<GridResult> cartesian;
-    FeatureGraph features;
     PolyMesh mesh;
     RunReport report; // all but the total time and memory, which the caller knows at its end
 };

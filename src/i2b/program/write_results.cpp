@@ -1,4 +1,5 @@
 #include "i2b/program/write_results.h"
+#include "i2b/core/memory.h"
 #include "i2b/quality/cell_quality.h"
 #include "i2b/write/atomic_folder.h"
 #include "i2b/write/foam_write.h"
@@ -64,6 +65,8 @@ void writeMeshResults(MeshResult& result, const Options& options, Context& conte
                       const CompleteReport& complete) {
     AtomicFolder folder(options.output.folder);
     writeMeshFiles(result.mesh, options.output, folder, context);
+    result.mesh = {}; // on the disk by now
+    returnFreedMemory();
     writeGridFile(*result.cartesian, options, folder, context);
     writeReportFile(result.report, options.output, folder, complete);
     context.checkCancelled();

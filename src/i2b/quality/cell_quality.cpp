@@ -1,40 +1,49 @@
 #include "i2b/quality/cell_quality.h"
 #include "i2b/core/parallel.h"
 #include "i2b/quality/mesh_geometry.h"
-#include "i2b/quality/skewness.h"
+#include "i2b/quality/measures.h"
+#include <algorithm>
+#include <atomic>
+#include <cmath>
 #include <numbers>
 
 namespace i2b {
 
+namespace {
+
+// Values are not negative and the largest of a set does not depend on the order: the same on any number of threads.
+void raise(float& to, float value) {
+    std::atomic_ref<float> at(to);
+    float now = at.load(std::memory_order_relaxed);
+    while (now < value && !at.compare_exchange_weak(now, value, std::memory_order_relaxed)) {
+    }
+}
+
+} // namespace
+
 CellQuality measureCellQuality(const PolyMesh& mesh) {
-    const Rows cellFaces = buildCellFaces(mesh);
-    const MeshGeometry g = measureGeometry(mesh, cellFaces);
-    const auto faces = static_cast<std::size_t>(mesh.faces()), internal = static_cast<std::size_t>(mesh.internalFaces());
-    std::vector<float> angle(faces, 0), skew(faces, 0);
-    parallelFor(faces, [&](std::size_t f) {
-        const Vec3& area = g.faceArea[f];
-        const Vec3& own = g.cellCentre[static_cast<std::size_t>(mesh.owner[f])];
-        const Vec3 toFace = g.faceCentre[f] - own;
-        Vec3 across;
-        if (f < internal) {
-            across = g.cellCentre[static_cast<std::size_t>(mesh.neighbour[f])] - own;
-            const double lengths = norm(area) * norm(across);
-            if (lengths > 0) angle[f] = static_cast<float>(std::acos(std::clamp(dot(area, across) / lengths, -1.0, 1.0)) * 180 / std::numbers::pi);
-        } else {
-            const Vec3 normal = normalized(area);
-            across = normal * dot(normal, toFace);
-        }
-        const double extent = (f < internal ? 0.2 : 0.4) * norm(across) + tinyDivisor;
-        skew[f] = static_cast<float>(skewness(mesh, mesh.face(static_cast<std::int32_t>(f)), g.faceCentre[f], area, toFace, across, extent, 0));
-    });
+    const RawVector<CellMoments> moments = measureCellMoments(mesh, buildCellFaces(mesh));
     CellQuality quality;
-    const auto cells = static_cast<std::size_t>(mesh.cells);
-    quality.nonOrthogonality.assign(cells, 0), quality.skewness.assign(cells, 0), quality.volume.resize(cells);
-    parallelFor(cells, [&](std::size_t c) {
-        quality.volume[c] = static_cast<float>(g.cellVolume[c]);
-        for (std::int32_t f : cellFaces[static_cast<std::int32_t>(c)]) {
-            quality.nonOrthogonality[c] = std::max(quality.nonOrthogonality[c], angle[static_cast<std::size_t>(f)]);
-            quality.skewness[c] = std::max(quality.skewness[c], skew[static_cast<std::size_t>(f)]);
+    quality.nonOrthogonality.assign(moments.size(), 0);
+    quality.skewness.assign(moments.size(), 0);
+    quality.volume.resize(moments.size());
+    parallelFor(moments.size(), [&](std::size_t c) { quality.volume[c] = static_cast<float>(moments[c].volume); });
+    const auto internal = static_cast<std::size_t>(mesh.internalFaces());
+    parallelFor(static_cast<std::size_t>(mesh.faces()), [&](std::size_t f) {
+        const auto face = static_cast<std::int32_t>(f);
+        const FaceShape shape = measureFace(mesh, face);
+        const auto own = static_cast<std::size_t>(mesh.owner[f]);
+        if (f >= internal) {
+            raise(quality.skewness[own], static_cast<float>(faceSkewness(mesh, face, shape, moments[own].centre, nullptr, 0)));
+            return;
+        }
+        const auto nei = static_cast<std::size_t>(mesh.neighbour[f]);
+        const double cosine = std::clamp(pairValues(shape, moments[own], moments[nei]).ortho, -1.0, 1.0);
+        const auto angle = static_cast<float>(std::acos(cosine) * 180 / std::numbers::pi);
+        const auto skew = static_cast<float>(faceSkewness(mesh, face, shape, moments[own].centre, &moments[nei].centre, 0));
+        for (const std::size_t c : {own, nei}) {
+            raise(quality.nonOrthogonality[c], angle);
+            raise(quality.skewness[c], skew);
         }
     });
     return quality;

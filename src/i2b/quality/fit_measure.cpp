@@ -117,18 +117,26 @@ void addSegment(Surface& s, const Vec3& a, const Vec3& b) {
     s.partOf.push_back(0);
 }
 
-// The wall in triangles around the face centres (as OpenFOAM's areas are); faceOf tells each triangle's face.
-Surface wallSurface(const PolyMesh& mesh, const Wall& wall, std::vector<std::uint32_t>& faceOf) {
+// The wall within reach of the sharp edges, in triangles around the face centres (as OpenFOAM's areas are); faceOf tells
+// each triangle's face. The rest of a wall would cost more memory than all else here, and nothing asks for it.
+Surface wallSurface(const PolyMesh& mesh, const Wall& wall, const SurfaceIndex& sharp, double reach,
+                    std::vector<std::uint32_t>& faceOf) {
+    const auto point = [&](std::int32_t v) { return mesh.points[static_cast<std::size_t>(v)]; };
+    std::vector<std::uint8_t> near(wall.faces.size());
+    parallelFor(near.size(), [&](std::size_t i) {
+        double radius = 0;
+        for (const std::int32_t v : mesh.face(wall.faces[i])) radius = std::max(radius, norm(point(v) - wall.shapes[i].centre));
+        near[i] = bool(sharp.closest(wall.shapes[i].centre, reach + radius));
+    });
     Surface s;
-    for (const std::int32_t v : wall.nodes) s.points.push_back(mesh.points[static_cast<std::size_t>(v)]);
     for (std::size_t i = 0; i < wall.faces.size(); ++i) {
+        if (!near[i]) continue;
         const auto face = mesh.face(wall.faces[i]);
-        const auto centre = static_cast<std::uint32_t>(s.points.size());
+        const auto first = static_cast<std::uint32_t>(s.points.size()), n = static_cast<std::uint32_t>(face.size());
+        for (const std::int32_t v : face) s.points.push_back(point(v));
         s.points.push_back(wall.shapes[i].centre);
-        for (std::size_t k = 0; k < face.size(); ++k) {
-            s.triangles.push_back({static_cast<std::uint32_t>(nodePlace(wall, face[k])),
-                                   static_cast<std::uint32_t>(nodePlace(wall, face[(k + 1) % face.size()])),
-                                   centre});
+        for (std::uint32_t k = 0; k < n; ++k) {
+            s.triangles.push_back({first + k, first + (k + 1) % n, first + n});
             s.partOf.push_back(0);
             faceOf.push_back(static_cast<std::uint32_t>(i));
         }
@@ -270,8 +278,7 @@ std::vector<Piece> cutPieces(const Surface& sharp, double length) {
 
 // The spacing runs on from edge to edge in their order, so that a line of many short edges gets as many
 // samples as one long edge, wherever its points are.
-std::vector<Sample> placeSamples(const Surface& sharp, const Reach& reach, double pieceLength) {
-    std::vector<Piece> pieces = cutPieces(sharp, pieceLength);
+std::vector<Sample> placeSamples(const Surface& sharp, const Reach& reach, std::vector<Piece> pieces) {
     const auto at = [&](const Piece& p, double along) {
         const auto& t = sharp.triangles[p.edge];
         const Vec3& a = sharp.points[t[0]];
@@ -322,8 +329,8 @@ bool leavesLine(const Vec3& p, const Vec3& direction, double h, double tolerance
 }
 
 void measureCapture(const Surface& sharpEdges, const SurfaceIndex& sharp, const Reach& reach,
-                    double pieceLength, const SurfaceIndex& creases, FitReport& report) {
-    const std::vector<Sample> samples = placeSamples(sharpEdges, reach, pieceLength);
+                    std::vector<Piece> pieces, const SurfaceIndex& creases, FitReport& report) {
+    const std::vector<Sample> samples = placeSamples(sharpEdges, reach, std::move(pieces));
     const auto ends = [&](std::uint32_t edge) {
         const auto& t = sharpEdges.triangles[edge];
         return std::pair{sharpEdges.points[t[0]], sharpEdges.points[t[1]]};
@@ -376,15 +383,19 @@ FitReport measureFit(const PolyMesh& mesh, const SurfaceIndex& index, const Feat
     measureFaces(wall, index, sharp, report);
     if (sharpEdges.triangles.empty()) return report;
 
-    std::vector<std::uint32_t> faceOf;
-    const Surface wallTriangles = wallSurface(mesh, wall, faceOf);
-    const SurfaceIndex wallIndex(wallTriangles);
-    const Surface creases = creaseSurface(mesh, wall);
     std::vector<double> sizes = wall.faceH;
     std::sort(sizes.begin(), sizes.end());
+    const double largestH = sizes.back();
     // A few slivers must not set the length of the pieces.
-    measureCapture(sharpEdges, sharp, {wallIndex, faceOf, wall.faceH, sizes.back()},
-                   2 * sizes[sizes.size() / 20], SurfaceIndex(creases), report);
+    std::vector<Piece> pieces = cutPieces(sharpEdges, 2 * sizes[sizes.size() / 20]);
+    double reach = 0;
+    for (const Piece& p : pieces) reach = std::max(reach, largestH / 2 + (p.to - p.from));
+    std::vector<std::uint32_t> faceOf;
+    const Surface wallTriangles = wallSurface(mesh, wall, sharp, 1.001 * reach, faceOf);
+    const SurfaceIndex wallIndex(wallTriangles);
+    const Surface creases = creaseSurface(mesh, wall);
+    measureCapture(sharpEdges, sharp, {wallIndex, faceOf, wall.faceH, largestH}, std::move(pieces),
+                   SurfaceIndex(creases), report);
     return report;
 }
 

@@ -10,8 +10,8 @@ enum class Kind { cells, faces, points };
 
 Vec3 place(const Measurement& m, Kind kind, std::int32_t id) {
     const auto i = static_cast<Index>(id);
-    return kind == Kind::cells   ? m.geometry.cellCentre[i]
-           : kind == Kind::faces ? m.geometry.faceCentre[i]
+    return kind == Kind::cells   ? m.moments[i].centre
+           : kind == Kind::faces ? measureFace(m.mesh, id).centre
                                  : m.mesh.points[i];
 }
 
@@ -83,14 +83,13 @@ QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits) 
     m.report.internalFaces = mesh.internalFaces();
     m.report.points = static_cast<std::int64_t>(mesh.points.size());
     m.report.box = pointBox(mesh.points);
-    measureFaces(m);
     measureDirections(m);
     measureAlignment(m);
     m.cellFaces = buildCellFaces(mesh);
     measureCells(m);
-    measureFaceCells(m);
     measureZones(m);
     m.cellFaces = {};
+    measureFaces(m);
     measureRegions(m);
     measurePatches(m);
     const Rows pointFaces = buildPointFaces(mesh);

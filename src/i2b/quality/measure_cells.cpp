@@ -1,6 +1,6 @@
 #include "i2b/quality/cell_edges.h"
 #include "i2b/quality/measure_steps.h"
-#include "i2b/quality/skewness.h"
+#include "i2b/quality/measures.h"
 #include <map>
 
 namespace i2b {
@@ -144,17 +144,13 @@ void checkOrder(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::
     if (multiple) ++part.multiplyConnected;
 }
 
-struct Directions {
-    std::array<bool, 3> valid{};
-    int count = 0, missing = -1;
-};
-
-void checkClosedness(const Measurement& m, std::span<const std::int32_t> faces, std::int32_t cell,
-                     const Directions& directions, CellPart& part) {
+void checkClosedness(const Measurement& m, std::span<const std::int32_t> faces,
+                     std::span<const FaceShape> shapes, std::int32_t cell, const Directions& directions,
+                     CellPart& part) {
     Vec3 sum, sizes;
-    for (const std::int32_t f : faces) {
-        const Vec3& area = m.geometry.faceArea[Index(f)];
-        if (m.mesh.owner[Index(f)] == cell)
+    for (Index i = 0; i < faces.size(); ++i) {
+        const Vec3& area = shapes[i].area;
+        if (m.mesh.owner[Index(faces[i])] == cell)
             sum += area;
         else
             sum -= area;
@@ -168,7 +164,7 @@ void checkClosedness(const Measurement& m, std::span<const std::int32_t> faces, 
         most = std::max(most, sizes[k]);
     }
     double aspect = most / (least + tinyDivisor);
-    const double volume = std::max(tinyDivisor, m.geometry.cellVolume[Index(cell)]);
+    const double volume = std::max(tinyDivisor, m.moments[Index(cell)].volume);
     const double surface = 1.0 / 6.0 * (sizes.x + sizes.y + sizes.z);
     // The power is costly, and of no account where it clearly leaves the ratio below both maximum and limit.
     const double floor = std::max(aspect, std::min(part.aspectRatio.most, m.limits.aspectRatio)) * 0.999;
@@ -181,39 +177,17 @@ void checkClosedness(const Measurement& m, std::span<const std::int32_t> faces, 
     if (aspect > m.limits.aspectRatio) part.aspect.hit(cell, aspect);
 }
 
-// Of the sum of n n^T over the internal faces, each n the area over their mean area; 1 for a cube inside the
-// mesh.
-double determinant(const Measurement& m, std::span<const std::int32_t> faces, const Directions& directions) {
-    if (directions.count == 1) return 1;
-    const std::int32_t internal = m.mesh.internalFaces();
-    double mean = 0;
-    int n = 0;
-    for (const std::int32_t f : faces)
-        if (f < internal) mean += norm(m.geometry.faceArea[Index(f)]), ++n;
-    if (n == 0 || mean < tinyDivisor) return 0;
-    mean /= n;
-    double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
-    for (const std::int32_t f : faces) {
-        if (f >= internal) continue;
-        const Vec3 a = divided(m.geometry.faceArea[Index(f)], mean);
-        xx += a.x * a.x, xy += a.x * a.y, xz += a.x * a.z;
-        yy += a.y * a.y, yz += a.y * a.z, zz += a.z * a.z;
-    }
-    if (directions.count == 2) (directions.missing == 0 ? xx : directions.missing == 1 ? yy : zz) = 1;
-    return std::abs(xx * yy * zz + xy * yz * xz + xz * xy * yz - xx * yz * yz - xy * xy * zz - xz * yy * xz) /
-           8.0;
-}
-
 // Does any face centre lie on the outer side of another face's plane, or in it? The angle is compared without
 // normalising anything unless it is within rounding of the tolerance.
-bool isConcave(const Measurement& m, std::span<const std::int32_t> faces, std::int32_t cell) {
-    for (const std::int32_t f : faces) {
-        const double side = m.mesh.owner[Index(f)] == cell ? 1 : -1;
-        const Vec3 area = m.geometry.faceArea[Index(f)] * side;
+bool isConcave(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::span<const FaceShape> shapes,
+               std::int32_t cell) {
+    for (Index f = 0; f < faces.size(); ++f) {
+        const double side = mesh.owner[Index(faces[f])] == cell ? 1 : -1;
+        const Vec3 area = shapes[f].area * side;
         const double area2 = norm2(area);
-        for (const std::int32_t g : faces) {
+        for (Index g = 0; g < faces.size(); ++g) {
             if (g == f) continue;
-            const Vec3 d = m.geometry.faceCentre[Index(g)] - m.geometry.faceCentre[Index(f)];
+            const Vec3 d = shapes[g].centre - shapes[f].centre;
             const double along = dot(d, area), size2 = norm2(d);
             if (along < 0 && along * along > (1.01 * planarCosine * planarCosine) * size2 * area2 &&
                 size2 * area2 > 1e-200)
@@ -276,6 +250,7 @@ void measureCells(Measurement& m) {
     const PolyMesh& mesh = m.mesh;
     const auto cells = static_cast<Index>(mesh.cells);
     Directions directions;
+    directions.count = 0;
     for (int k = 0; k < 3; ++k) {
         directions.valid[Index(k)] = m.report.geometricDirections[Index(k)] == 1;
         if (directions.valid[Index(k)])
@@ -283,19 +258,20 @@ void measureCells(Measurement& m) {
         else
             directions.missing = k;
     }
-    m.geometry.cellCentre.resize(cells);
-    m.geometry.cellVolume.resize(cells);
+    m.moments.resize(cells);
     constexpr Index block = Index(1) << 17;
     std::vector<double> determinants(std::min(block, cells));
     double volumeSum = 0, determinantSum = 0;
     CellPart total;
     const auto measure = [&](Index begin, Index end, CellPart& part) {
         CellEdges edges;
+        CellFaceShapes faceShapes(mesh);
         std::vector<std::pair<std::int32_t, std::int32_t>> scratch;
         for (Index c = begin; c < end; ++c) {
             const auto cell = static_cast<std::int32_t>(c);
             const std::span<const std::int32_t> faces = m.cellFaces[cell];
-            measureCell(mesh, faces, cell, m.geometry);
+            const std::span<const FaceShape> shapes = faceShapes.of(faces);
+            m.moments[c] = measureCell(mesh, faces, shapes, cell);
             if (faces.size() <= 3) part.illegal.hit(cell);
             checkEdges(mesh, faces, cell, edges, part);
             countShape(mesh, faces, edges.vertices(), part);
@@ -305,20 +281,20 @@ void measureCells(Measurement& m) {
                 part.oneInternal.hit(cell);
             else if (internal == 2)
                 part.twoInternal.hit(cell);
-            const double volume = m.geometry.cellVolume[c];
+            const double volume = m.moments[c].volume;
             part.volume.add(volume);
             if (volume < m.limits.smallVolume) part.zeroVolume.hit(cell, -volume);
-            checkClosedness(m, faces, cell, directions, part);
-            const double det = determinant(m, faces, directions);
+            checkClosedness(m, faces, shapes, cell, directions, part);
+            const double det = cellDeterminant(mesh, faces, shapes, directions);
             determinants[c % block] = det;
             part.determinants.add(det);
             if (det < m.limits.determinant) part.determinant.hit(cell, -det);
-            if (isConcave(m, faces, cell)) part.concave.hit(cell);
+            if (isConcave(mesh, faces, shapes, cell)) part.concave.hit(cell);
         }
     };
     orderedBlocks(cells, block, total, measure, [&](Index begin, Index end) {
         for (Index c = begin; c < end; ++c) {
-            volumeSum += m.geometry.cellVolume[c];
+            volumeSum += m.moments[c].volume;
             determinantSum += determinants[c - begin];
         }
     });

@@ -1,13 +1,12 @@
-#include "i2b/quality/measure_steps.h"
-#include "i2b/quality/skewness.h"
+#include "i2b/quality/face_measure.h"
+#include "i2b/quality/measures.h"
 #include <numbers>
 
 namespace i2b {
 namespace {
 
 using Index = std::size_t;
-constexpr double rounding = 1e-15, tinyWeight = 1e-300, largestRadius = 1e15,
-                 beyondAll = 1e300;
+constexpr double rounding = 1e-15, largestRadius = 1e15, beyondAll = 1e300;
 constexpr double tetTolerance = rounding * rounding;
 
 struct FaceCellPart {
@@ -131,80 +130,52 @@ int tetErrors(const PolyMesh& mesh, std::span<const std::int32_t> v, const Vec3&
     return errors;
 }
 
-struct InternalValues {
-    double ortho, weight, ratio;
-};
-
 class FaceCells {
   public:
     explicit FaceCells(const Measurement& m)
-        : m_(m), mesh_(m.mesh), geometry_(m.geometry), internal_(Index(m.mesh.internalFaces())),
+        : m_(m), mesh_(m.mesh), internal_(Index(m.mesh.internalFaces())),
           severeCosine_(std::cos(m.limits.nonOrthogonality * std::numbers::pi / 180)) {}
 
     // values: where the face is internal
-    void measure(Index f, FaceCellPart& part, InternalValues* values) const {
+    void measure(Index f, const FaceShape& shape, FaceCellPart& part, PairValues* values) const {
         const auto id = static_cast<std::int32_t>(f);
-        const std::span<const std::int32_t> v = mesh_.face(id);
-        const Vec3& centre = geometry_.faceCentre[f];
-        const Vec3& area = geometry_.faceArea[f];
-        const auto own = static_cast<Index>(mesh_.owner[f]);
-        const Vec3& ownCentre = geometry_.cellCentre[own];
+        const CellMoments& own = m_.moments[static_cast<Index>(mesh_.owner[f])];
         const Vec3* neiCentre = nullptr;
-        double skew = 0, leastPyramid = dot(area, centre - ownCentre);
-        const double least = std::min(part.skewness.most, m_.limits.skewness); // less is not asked for
+        double leastPyramid = dot(shape.area, shape.centre - own.centre);
         int wrong = leastPyramid / 3 < -rounding ? 1 : 0;
-        const Vec3 toFace = centre - ownCentre;
         if (f < internal_) {
-            const auto nei = static_cast<Index>(mesh_.neighbour[f]);
-            neiCentre = &geometry_.cellCentre[nei];
-            const double pyramid = dot(area, *neiCentre - centre);
+            const CellMoments& nei = m_.moments[static_cast<Index>(mesh_.neighbour[f])];
+            neiCentre = &nei.centre;
+            const double pyramid = dot(shape.area, nei.centre - shape.centre);
             if (pyramid / 3 < -rounding) ++wrong;
             leastPyramid = std::min(leastPyramid, pyramid);
-            const Vec3 across = *neiCentre - ownCentre;
-            skew = skewness(mesh_, v, centre, area, toFace, across, 0.2 * norm(across) + tinyDivisor, least);
-            *values = internalValues(id, own, nei, part);
-        } else {
-            const double size = norm(area);
-            const Vec3 normal = size < tinyDivisor ? Vec3{} : divided(area, size);
-            const Vec3 across = normal * dot(normal, toFace);
-            skew = skewness(mesh_, v, centre, area, toFace, across, 0.4 * norm(across) + tinyDivisor, least);
+            *values = pairValues(shape, own, nei);
+            judge(id, *values, part);
         }
+        const double least = std::min(part.skewness.most, m_.limits.skewness); // less is not asked for
+        const double skew = faceSkewness(mesh_, id, shape, own.centre, neiCentre, least);
         part.pyramidErrors += wrong;
         if (wrong > 0) part.wrongOriented.hit(id, -leastPyramid);
         part.skewness.add(skew);
         if (skew > m_.limits.skewness) part.skew.hit(id, skew);
-        const int errors = tetErrors(mesh_, v, centre, ownCentre, neiCentre);
+        const int errors = tetErrors(mesh_, mesh_.face(id), shape.centre, own.centre, neiCentre);
         part.tetErrors += errors;
         if (errors > 0) part.lowQualityTets.hit(id, -leastPyramid);
     }
 
   private:
-    InternalValues internalValues(std::int32_t id, Index own, Index nei, FaceCellPart& part) const {
-        const Vec3& centre = geometry_.faceCentre[Index(id)];
-        const Vec3& area = geometry_.faceArea[Index(id)];
-        const Vec3& ownCentre = geometry_.cellCentre[own];
-        const Vec3& neiCentre = geometry_.cellCentre[nei];
-        const Vec3 across = neiCentre - ownCentre;
-        InternalValues values;
-        values.ortho = dot(across, area) / (norm(across) * norm(area) + tinyDivisor);
+    void judge(std::int32_t id, const PairValues& values, FaceCellPart& part) const {
         if (values.ortho < severeCosine_) {
             ++(values.ortho > rounding ? part.severe : part.orthoErrors);
             part.nonOrtho.hit(id, -values.ortho);
         }
-        const double ownDistance = std::abs(dot(area, centre - ownCentre));
-        const double neiDistance = std::abs(dot(area, neiCentre - centre));
-        values.weight = std::min(neiDistance, ownDistance) / (neiDistance + ownDistance + tinyWeight);
         if (values.weight < m_.limits.faceWeight) part.lowWeight.hit(id, -values.weight);
-        const double ownVolume = geometry_.cellVolume[own], neiVolume = geometry_.cellVolume[nei];
-        values.ratio = std::min(ownVolume, neiVolume) / (std::max(ownVolume, neiVolume) + tinyWeight);
         if (values.ratio < m_.limits.volumeRatio) part.lowVolRatio.hit(id, -values.ratio);
         part.ortho.add(values.ortho), part.weight.add(values.weight), part.ratio.add(values.ratio);
-        return values;
     }
 
     const Measurement& m_;
     const PolyMesh& mesh_;
-    const MeshGeometry& geometry_;
     Index internal_;
     double severeCosine_;
 };
@@ -213,31 +184,14 @@ double degrees(double cosine) {
     return std::acos(std::min(1.0, std::max(-1.0, cosine))) * 180 / std::numbers::pi;
 }
 
-} // namespace
+struct Sums {
+    double flat = 0, ortho = 0, weight = 0, ratio = 0;
+};
 
-void measureFaceCells(Measurement& m) {
-    const auto faces = static_cast<Index>(m.mesh.faces()),
-               internal = static_cast<Index>(m.mesh.internalFaces());
-    const FaceCells faceCells(m);
-    constexpr Index block = Index(1) << 17;
-    std::vector<InternalValues> values(std::min(block, faces));
-    InternalValues sum{0, 0, 0};
-    FaceCellPart total;
-    orderedBlocks(
-        faces, block, total,
-        [&](Index begin, Index end, FaceCellPart& part) {
-            for (Index f = begin; f < end; ++f) faceCells.measure(f, part, &values[f % block]);
-        },
-        [&](Index begin, Index end) {
-            for (Index f = begin; f < std::min(end, internal); ++f) {
-                sum.ortho += values[f - begin].ortho;
-                sum.weight += values[f - begin].weight;
-                sum.ratio += values[f - begin].ratio;
-            }
-        });
+void storeFaceCells(Measurement& m, const FaceCellPart& total, const Sums& sum) {
     QualityReport& r = m.report;
-    const auto n = static_cast<double>(internal);
-    if (internal > 0) {
+    if (m.mesh.internalFaces() > 0) {
+        const auto n = static_cast<double>(m.mesh.internalFaces());
         r.maxNonOrthogonality = degrees(total.ortho.least);
         r.meanNonOrthogonality = degrees(sum.ortho / n);
         r.minFaceWeight = total.weight.least, r.meanFaceWeight = sum.weight / n;
@@ -246,7 +200,7 @@ void measureFaceCells(Measurement& m) {
     r.severeNonOrthogonalFaces = total.severe;
     r.nonOrthogonalityErrors = total.orthoErrors;
     r.wrongOrientedFaces = total.pyramidErrors;
-    r.maxSkewness = faces > 0 ? total.skewness.most : 0;
+    r.maxSkewness = m.mesh.faces() > 0 ? total.skewness.most : 0;
     r.highlySkewFaces = total.skew.count;
     r.lowWeightFaces = total.lowWeight.count;
     r.lowVolumeRatioFaces = total.lowVolRatio.count;
@@ -257,6 +211,45 @@ void measureFaceCells(Measurement& m) {
     m.tallies.lowWeightFaces = total.lowWeight;
     m.tallies.lowVolRatioFaces = total.lowVolRatio;
     m.tallies.lowQualityTetFaces = total.lowQualityTets;
+}
+
+} // namespace
+
+// Faces alone and with their cells in one pass, so that nothing of them need be kept.
+void measureFaces(Measurement& m) {
+    struct Part {
+        FacePart alone;
+        FaceCellPart withCells;
+        void join(const Part& o) { alone.join(o.alone), withCells.join(o.withCells); }
+    };
+    const auto faces = static_cast<Index>(m.mesh.faces()),
+               internal = static_cast<Index>(m.mesh.internalFaces());
+    m.shortPoints.assign(m.mesh.points.size(), 0);
+    const FaceCells faceCells(m);
+    constexpr Index block = Index(1) << 17;
+    std::vector<PairValues> values(std::min(block, faces));
+    std::vector<double> flat(values.size());
+    Sums sum;
+    Part total;
+    const auto measure = [&](Index begin, Index end, Part& part) {
+        FaceMeasure alone(m);
+        FaceShape shape;
+        for (Index f = begin; f < end; ++f) {
+            flat[f % block] = alone.measure(static_cast<std::int32_t>(f), shape, part.alone);
+            faceCells.measure(f, shape, part.withCells, &values[f % block]);
+        }
+    };
+    orderedBlocks(faces, block, total, measure, [&](Index begin, Index end) {
+        for (Index f = begin; f < end; ++f)
+            if (flat[f - begin] >= 0) sum.flat += flat[f - begin];
+        for (Index f = begin; f < std::min(end, internal); ++f) {
+            sum.ortho += values[f - begin].ortho;
+            sum.weight += values[f - begin].weight;
+            sum.ratio += values[f - begin].ratio;
+        }
+    });
+    storeFaces(m, total.alone, sum.flat);
+    storeFaceCells(m, total.withCells, sum);
 }
 
 } // namespace i2b

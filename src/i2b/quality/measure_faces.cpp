@@ -1,4 +1,4 @@
-#include "i2b/quality/measure_steps.h"
+#include "i2b/quality/face_measure.h"
 #include <array>
 #include <atomic>
 #include <numbers>
@@ -8,21 +8,6 @@ namespace {
 
 using Index = std::size_t;
 constexpr double rounding = 1e-15, tinyLength = 1e-150, tinyArea = 1e-300;
-
-struct FacePart {
-    Tally outOfRange, zeroArea, warped, concave;
-    std::int64_t faultyVertices = 0, flatnessFaces = 0;
-    Extremes area, flatness, edge2;
-    double maxConcaveSine = 0;
-
-    void join(const FacePart& o) {
-        outOfRange.join(o.outOfRange), zeroArea.join(o.zeroArea), warped.join(o.warped),
-            concave.join(o.concave);
-        faultyVertices += o.faultyVertices, flatnessFaces += o.flatnessFaces;
-        area.join(o.area), flatness.join(o.flatness), edge2.join(o.edge2);
-        maxConcaveSine = std::max(maxConcaveSine, o.maxConcaveSine);
-    }
-};
 
 void mark(std::vector<std::uint8_t>& marks, std::int32_t i) {
     std::atomic_ref<std::uint8_t>(marks[Index(i)]).store(1, std::memory_order_relaxed);
@@ -87,72 +72,61 @@ double flatness(const Vec3* point, const Vec3* edge, Count n, const Vec3& centre
     return areaSize / (sum + tinyLength);
 }
 
-class FaceMeasure {
-  public:
-    explicit FaceMeasure(Measurement& m)
-        : m_(m), maxSine_(std::sin(m.limits.concavity * std::numbers::pi / 180)),
-          short2_(nearDistanceSquared(m.report.box)) {}
-
-    // Returns the flatness, or -1 of a face that has none.
-    double measure(std::int32_t id, FacePart& part) {
-        const std::span<const std::int32_t> v = m_.mesh.face(id);
-        if (v.size() == 4) {
-            std::array<Vec3, 4> point, edge;
-            return measure(id, v, std::integral_constant<Index, 4>{}, point.data(), edge.data(), part);
-        }
-        points_.resize(v.size());
-        edges_.resize(v.size());
-        return measure(id, v, v.size(), points_.data(), edges_.data(), part);
-    }
-
-  private:
-    template <class Count>
-    double measure(std::int32_t id, std::span<const std::int32_t> v, Count n, Vec3* point, Vec3* edge,
-                   FacePart& part) {
-        for (Index i = 0; i < n; ++i) point[i] = m_.mesh.points[Index(v[i])];
-        double shortest2 = std::numeric_limits<double>::infinity();
-        for (Index i = 0; i < n; ++i) {
-            edge[i] = point[i + 1 == n ? 0 : i + 1] - point[i];
-            const double length2 = norm2(edge[i]);
-            part.edge2.add(length2);
-            shortest2 = std::min(shortest2, length2);
-        }
-        if (shortest2 < short2_) markShortEdges(v, edge);
-        const FaceShape shape = shapeOfPolygon(point, n);
-        m_.geometry.faceCentre[Index(id)] = shape.centre;
-        m_.geometry.faceArea[Index(id)] = shape.area;
-        const double area = norm(shape.area);
-        part.area.add(area);
-        if (area < m_.limits.faceArea) part.zeroArea.hit(id, -area);
-        if (const int repeated = repeatedVertices(v, n); repeated > 0) {
-            part.faultyVertices += repeated;
-            part.outOfRange.hit(id, repeated);
-        }
-        if (!clearlyConvex(edge, n, shape.area)) {
-            const double sine = concavitySine(m_.mesh, v, shape.area, area, maxSine_);
-            part.maxConcaveSine = std::max(part.maxConcaveSine, sine);
-            if (sine > rounding) part.concave.hit(id, sine);
-        }
-        if (n <= 3 || !(area > tinyArea)) return -1;
-        const double value = area > tinyLength ? flatness(point, edge, n, shape.centre, area) : 1.0;
-        ++part.flatnessFaces;
-        part.flatness.add(value);
-        if (value < m_.limits.flatness) part.warped.hit(id, -value);
-        return value;
-    }
-
-    void markShortEdges(std::span<const std::int32_t> v, const Vec3* edge) {
-        for (Index i = 0; i < v.size(); ++i)
-            if (norm2(edge[i]) < short2_)
-                for (const std::int32_t p : {v[i], v[i + 1 == v.size() ? 0 : i + 1]}) mark(m_.shortPoints, p);
-    }
-
-    Measurement& m_;
-    double maxSine_, short2_;
-    std::vector<Vec3> points_, edges_;
-};
-
 } // namespace
+
+FaceMeasure::FaceMeasure(Measurement& m)
+    : m_(m), maxSine_(std::sin(m.limits.concavity * std::numbers::pi / 180)),
+      short2_(nearDistanceSquared(m.report.box)) {}
+
+double FaceMeasure::measure(std::int32_t id, FaceShape& shape, FacePart& part) {
+    const std::span<const std::int32_t> v = m_.mesh.face(id);
+    if (v.size() == 4) {
+        std::array<Vec3, 4> point, edge;
+        return measure(id, v, std::integral_constant<Index, 4>{}, point.data(), edge.data(), shape, part);
+    }
+    points_.resize(v.size());
+    edges_.resize(v.size());
+    return measure(id, v, v.size(), points_.data(), edges_.data(), shape, part);
+}
+
+template <class Count>
+double FaceMeasure::measure(std::int32_t id, std::span<const std::int32_t> v, Count n, Vec3* point, Vec3* edge,
+                            FaceShape& shape, FacePart& part) {
+    for (Index i = 0; i < n; ++i) point[i] = m_.mesh.points[Index(v[i])];
+    double shortest2 = std::numeric_limits<double>::infinity();
+    for (Index i = 0; i < n; ++i) {
+        edge[i] = point[i + 1 == n ? 0 : i + 1] - point[i];
+        const double length2 = norm2(edge[i]);
+        part.edge2.add(length2);
+        shortest2 = std::min(shortest2, length2);
+    }
+    if (shortest2 < short2_) markShortEdges(v, edge);
+    shape = shapeOfPolygon(point, n);
+    const double area = norm(shape.area);
+    part.area.add(area);
+    if (area < m_.limits.faceArea) part.zeroArea.hit(id, -area);
+    if (const int repeated = repeatedVertices(v, n); repeated > 0) {
+        part.faultyVertices += repeated;
+        part.outOfRange.hit(id, repeated);
+    }
+    if (!clearlyConvex(edge, n, shape.area)) {
+        const double sine = concavitySine(m_.mesh, v, shape.area, area, maxSine_);
+        part.maxConcaveSine = std::max(part.maxConcaveSine, sine);
+        if (sine > rounding) part.concave.hit(id, sine);
+    }
+    if (n <= 3 || !(area > tinyArea)) return -1;
+    const double value = area > tinyLength ? flatness(point, edge, n, shape.centre, area) : 1.0;
+    ++part.flatnessFaces;
+    part.flatness.add(value);
+    if (value < m_.limits.flatness) part.warped.hit(id, -value);
+    return value;
+}
+
+void FaceMeasure::markShortEdges(std::span<const std::int32_t> v, const Vec3* edge) {
+    for (Index i = 0; i < v.size(); ++i)
+        if (norm2(edge[i]) < short2_)
+            for (const std::int32_t p : {v[i], v[i + 1 == v.size() ? 0 : i + 1]}) mark(m_.shortPoints, p);
+}
 
 Tally tallyMarks(const std::vector<std::uint8_t>& marks) {
     Tally tally;
@@ -165,25 +139,7 @@ Tally tallyMarks(const std::vector<std::uint8_t>& marks) {
 
 double nearDistanceSquared(const Box& box) { return norm2(1e-6 * box.extent()); }
 
-void measureFaces(Measurement& m) {
-    const PolyMesh& mesh = m.mesh;
-    const auto faces = static_cast<Index>(mesh.faces());
-    m.geometry.faceCentre.resize(faces);
-    m.geometry.faceArea.resize(faces);
-    m.shortPoints.assign(mesh.points.size(), 0);
-    constexpr Index block = Index(1) << 18;
-    std::vector<double> flat(std::min(block, faces));
-    double flatSum = 0;
-    FacePart total;
-    const auto measure = [&](Index begin, Index end, FacePart& part) {
-        FaceMeasure face(m);
-        for (Index f = begin; f < end; ++f)
-            flat[f % block] = face.measure(static_cast<std::int32_t>(f), part);
-    };
-    orderedBlocks(faces, block, total, measure, [&](Index begin, Index end) {
-        for (Index i = 0; i < end - begin; ++i)
-            if (flat[i] >= 0) flatSum += flat[i];
-    });
+void storeFaces(Measurement& m, FacePart& total, double flatSum) {
     QualityReport& r = m.report;
     r.minFaceArea = total.area.least, r.maxFaceArea = total.area.most;
     r.faultyFaceVertices = total.faultyVertices;

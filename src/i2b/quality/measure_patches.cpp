@@ -115,10 +115,10 @@ Vec3 absolute(const Vec3& a) { return {std::abs(a.x), std::abs(a.y), std::abs(a.
 struct Wedge {
     Vec3 normal, centreNormal;
 };
-Wedge wedgeOf(const Measurement& m, const Patch& patch) {
+Wedge wedgeOf(const PolyMesh& mesh, const Patch& patch) {
     Wedge wedge;
     for (std::int32_t f = patch.start; f < patch.start + patch.count; ++f) {
-        const Vec3& area = m.geometry.faceArea[Index(f)];
+        const Vec3 area = measureFace(mesh, f).area;
         wedge.normal += divided(area, norm(area) + 1e-300);
     }
     wedge.normal = divided(wedge.normal, patch.count);
@@ -165,7 +165,7 @@ void measureZones(Measurement& m) {
         quality.cells = static_cast<std::int64_t>(zone.cells.size());
         std::vector<bool> used(mesh.points.size(), false);
         for (const std::int32_t c : zone.cells) {
-            quality.volume += m.geometry.cellVolume[Index(c)];
+            quality.volume += m.moments[Index(c)].volume;
             for (const std::int32_t f : m.cellFaces[c])
                 for (const std::int32_t p : mesh.face(f)) {
                     if (used[Index(p)]) continue;
@@ -219,11 +219,11 @@ void measureDirections(Measurement& m) {
             anyEmpty = true;
             Vec3 sum;
             for (std::int32_t f = patch.start; f < patch.start + patch.count; ++f)
-                sum += absolute(m.geometry.faceArea[Index(f)]);
+                sum += absolute(measureFace(mesh, f).area);
             emptySum += sum;
         } else if (patch.type == "wedge") {
             anyWedge = true;
-            const Wedge wedge = wedgeOf(m, patch);
+            const Wedge wedge = wedgeOf(mesh, patch);
             wedgeSum += absolute(wedge.centreNormal);
             r.wedges.push_back(
                 {patch.name, std::acos(dot(wedge.centreNormal, wedge.normal)) * 180 / std::numbers::pi});
@@ -233,8 +233,9 @@ void measureDirections(Measurement& m) {
     r.geometricDirections = r.solutionDirections;
     if (anyWedge) removeDirections(wedgeSum, r.geometricDirections);
     for (std::int32_t f = mesh.internalFaces(); f < mesh.faces(); ++f) {
-        areaSum += m.geometry.faceArea[Index(f)];
-        areaSize += norm(m.geometry.faceArea[Index(f)]);
+        const Vec3 area = measureFace(mesh, f).area;
+        areaSum += area;
+        areaSize += norm(area);
     }
     r.boundaryOpenness = divided(areaSum, areaSize + 1e-300);
 }

@@ -22,30 +22,27 @@ struct Measurement {
     const PolyMesh& mesh;
     const QualityLimits& limits;
     Rows cellFaces;
-    MeshGeometry geometry;
+    RawVector<CellMoments> moments; // per cell
     QualityTallies tallies;
     QualityReport report;
     std::vector<std::uint8_t> shortPoints; // per point: 1 at the end of a short edge
 };
 
-// Of single faces: geometry.faceCentre and faceArea, areas, flatness, angles, repeated vertices, edge
-// lengths.
-void measureFaces(Measurement& m);
-// Of single cells: cellCentre and cellVolume, closedness, aspect ratio, determinant, concavity, shape, edge
+// Of single cells: moments, closedness, aspect ratio, determinant, concavity, shape, edge
 // use.
 void measureCells(Measurement& m);
-// Of faces with the cells at their sides: orthogonality, pyramids, skewness, weights, volume ratio,
-// tetrahedra.
-void measureFaceCells(Measurement& m);
+// Of faces: areas, flatness, angles, repeated vertices, edge lengths; with the cells at their sides: orthogonality,
+// pyramids, skewness, weights, volume ratio, tetrahedra. Needs moments.
+void measureFaces(Measurement& m);
 
-void measureDirections(Measurement& m); // empty and wedge patches; needs faceArea
+void measureDirections(Measurement& m); // empty and wedge patches
 void measureAlignment(Measurement& m);  // of edges, where a direction is empty; needs the directions
 void measurePoints(Measurement& m,
                    const Rows& pointFaces); // unused, internal, near points (after measureFaces); edges
 void measureFaceFaces(Measurement& m, const Rows& pointFaces); // pairs that share points oddly; after measureFaces
 void measureRegions(Measurement& m);
 void measurePatches(Measurement& m);
-void measureZones(Measurement& m); // needs cellVolume
+void measureZones(Measurement& m); // needs moments
 
 // 1.0e-6 of the diagonal, squared: closer points are near, shorter edges are short.
 double nearDistanceSquared(const Box& box);

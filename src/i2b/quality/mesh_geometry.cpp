@@ -29,41 +29,34 @@ FaceShape measureFace(const PolyMesh& mesh, std::int32_t face) {
     return shapeOfPolygon(many.data(), v.size());
 }
 
-void measureCell(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::int32_t cell,
-                 MeshGeometry& geometry) {
+CellMoments measureCell(const PolyMesh& mesh, std::span<const std::int32_t> faces,
+                        std::span<const FaceShape> shapes, std::int32_t cell) {
     Vec3 mean;
-    for (const std::int32_t f : faces) mean += geometry.faceCentre[Index(f)];
+    for (const FaceShape& shape : shapes) mean += shape.centre;
     mean = divided(mean, static_cast<double>(faces.size()));
     Vec3 weighted;
     double volume3 = 0;
-    for (const std::int32_t f : faces) {
-        const Vec3& centre = geometry.faceCentre[Index(f)];
-        const Vec3 outwards = mesh.owner[Index(f)] == cell ? centre - mean : mean - centre;
-        const double pyramid3 = dot(geometry.faceArea[Index(f)], outwards);
+    for (Index i = 0; i < faces.size(); ++i) {
+        const Vec3& centre = shapes[i].centre;
+        const Vec3 outwards = mesh.owner[Index(faces[i])] == cell ? centre - mean : mean - centre;
+        const double pyramid3 = dot(shapes[i].area, outwards);
         weighted += pyramid3 * ((3.0 / 4.0) * centre + (1.0 / 4.0) * mean);
         volume3 += pyramid3;
     }
-    geometry.cellCentre[Index(cell)] = std::abs(volume3) > tinyVolume ? divided(weighted, volume3) : mean;
-    geometry.cellVolume[Index(cell)] = volume3 * (1.0 / 3.0);
+    return {std::abs(volume3) > tinyVolume ? divided(weighted, volume3) : mean, volume3 * (1.0 / 3.0)};
 }
 
-MeshGeometry measureGeometry(const PolyMesh& mesh, const Rows& cellFaces) {
-    MeshGeometry g;
-    const auto faces = static_cast<Index>(mesh.faces()), cells = static_cast<Index>(mesh.cells);
-    g.faceCentre.resize(faces);
-    g.faceArea.resize(faces);
-    parallelFor(faces, [&](Index f) {
-        const FaceShape shape = measureFace(mesh, static_cast<std::int32_t>(f));
-        g.faceCentre[f] = shape.centre;
-        g.faceArea[f] = shape.area;
+RawVector<CellMoments> measureCellMoments(const PolyMesh& mesh, const Rows& cellFaces) {
+    RawVector<CellMoments> cells(static_cast<Index>(mesh.cells));
+    parallelChunks(cells.size(), 2048, [&](Index begin, Index end, Index) {
+        CellFaceShapes shapes(mesh);
+        for (Index c = begin; c < end; ++c) {
+            const auto cell = static_cast<std::int32_t>(c);
+            const std::span<const std::int32_t> faces = cellFaces[cell];
+            cells[c] = measureCell(mesh, faces, shapes.of(faces), cell);
+        }
     });
-    g.cellCentre.resize(cells);
-    g.cellVolume.resize(cells);
-    parallelFor(cells, [&](Index c) {
-        const auto cell = static_cast<std::int32_t>(c);
-        measureCell(mesh, cellFaces[cell], cell, g);
-    });
-    return g;
+    return cells;
 }
 
 } // namespace i2b

@@ -1,21 +1,21 @@
-// Centres, areas and volumes of a PolyMesh, by the definitions of OpenFOAM v1912, rounding included.
+// Centres, areas and volumes of a PolyMesh, by the definitions of OpenFOAM v1912, rounding included. Those of faces are
+// worked out where they are asked for: held for all faces they would be larger than the mesh.
 #pragma once
-#include "i2b/quality/mesh_topology.h"
+#include "i2b/assemble/mesh_topology.h"
 
 namespace i2b {
 
 // True division: core's multiplies by the inverse, which rounds differently.
 constexpr Vec3 divided(const Vec3& a, double s) { return {a.x / s, a.y / s, a.z / s}; }
 
-struct MeshGeometry {
-    RawVector<Vec3> faceCentre;   // m
-    RawVector<Vec3> faceArea;     // m^2, along the normal
-    RawVector<Vec3> cellCentre;   // m
-    RawVector<double> cellVolume; // m^3
+struct FaceShape {
+    Vec3 centre; // m
+    Vec3 area;   // m^2, along the normal
 };
 
-struct FaceShape {
-    Vec3 centre, area;
+struct CellMoments {
+    Vec3 centre;       // m
+    double volume = 0; // m^3
 };
 
 // A polygon as the fan of triangles around the mean of its vertices: centre weighted by the triangles' areas.
@@ -46,11 +46,36 @@ FaceShape shapeOfPolygon(const Vec3* point, Count n) {
 
 FaceShape measureFace(const PolyMesh& mesh, std::int32_t face);
 
-// A cell as pyramids on its faces with their apex at the mean of the face centres. Needs faceCentre and
-// faceArea.
-void measureCell(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::int32_t cell,
-                 MeshGeometry& geometry);
+// The shapes of a cell's faces side by side. The cells of a mesh follow each other so that most faces of one belong to
+// one just before it, too: a few are remembered, and each is worked out little more than once. One per thread.
+class CellFaceShapes {
+  public:
+    explicit CellFaceShapes(const PolyMesh& mesh) : mesh_(mesh), face_(slots, -1), shape_(slots) {}
 
-MeshGeometry measureGeometry(const PolyMesh& mesh, const Rows& cellFaces);
+    // Holds until the next call.
+    std::span<const FaceShape> of(std::span<const std::int32_t> faces) {
+        if (row_.size() < faces.size()) row_.resize(faces.size());
+        for (std::size_t i = 0; i < faces.size(); ++i) {
+            const std::int32_t f = faces[i];
+            const std::size_t slot = static_cast<std::size_t>(f) % slots;
+            if (face_[slot] != f) face_[slot] = f, shape_[slot] = measureFace(mesh_, f);
+            row_[i] = shape_[slot];
+        }
+        return {row_.data(), faces.size()};
+    }
+
+  private:
+    static constexpr std::size_t slots = 512;
+    const PolyMesh& mesh_;
+    std::vector<std::int32_t> face_; // in each slot
+    std::vector<FaceShape> shape_, row_;
+};
+
+// A cell as pyramids on its faces with their apex at the mean of the face centres. shapes: of its faces.
+CellMoments measureCell(const PolyMesh& mesh, std::span<const std::int32_t> faces,
+                        std::span<const FaceShape> shapes, std::int32_t cell);
+
+// Of all cells.
+RawVector<CellMoments> measureCellMoments(const PolyMesh& mesh, const Rows& cellFaces);
 
 } // namespace i2b

@@ -1,7 +1,6 @@
 #include "i2b/quality/repair.h"
 #include "i2b/core/parallel.h"
-#include "i2b/quality/mesh_geometry.h"
-#include "i2b/quality/quality_report.h"
+#include "i2b/quality/mesh_faults.h"
 #include <algorithm>
 
 namespace i2b {
@@ -13,147 +12,181 @@ constexpr int gentleRounds = 12;  // then the points of a bad cell go back whole
 constexpr int lastRound = 40;
 constexpr int qualityRounds = 14;
 constexpr double qualityStep = 0.2;
-constexpr double flat = 1e-9;     // a pyramid below this part of its cell's size counts as wrong
 
-// The nodes that the fit has placed: core points, then the wall point of each fan.
-class Nodes {
-  public:
-    Nodes(const Front& front, const LatticeMesh& lattice, const LayerStack& layers, double thickness)
-        : core_(static_cast<std::size_t>(lattice.pointCount())), layers_(static_cast<std::size_t>(layers.count)),
-          start(lattice.latticePoints()) {
-        for (std::size_t v = 0; v < front.front.size(); ++v) {
-            const std::array<std::int8_t, 3>& d = front.direction[v];
-            const Vec3 f = start[static_cast<std::size_t>(front.corePoint[v])];
-            start.push_back(f + Vec3{double(d[0]), double(d[1]), double(d[2])} * (thickness * front.h[v]));
-        }
-        fitted = start;
-        corePoint_.assign(front.corePoint.begin(), front.corePoint.end());
-        for (std::size_t i = 0; i < front.movedPoints.size(); ++i) fitted[static_cast<std::size_t>(front.movedPoints[i])] = front.movedTo[i];
-        for (std::size_t v = 0; v < front.front.size(); ++v) {
-            const auto& p = front.mesh.point(FrontMesh::VertexHandle(static_cast<int>(v)));
-            fitted[static_cast<std::size_t>(front.corePoint[v])] = front.front[v];
-            fitted[core_ + v] = {p[0], p[1], p[2]};
-        }
-        beta.assign(start.size(), 1.0f);
-    }
-    // Of a mesh point; the points of a layer belong to the fan.
-    std::size_t of(std::int32_t point) const {
-        const auto p = static_cast<std::size_t>(point);
-        return p < core_ ? p : core_ + (p - core_) / layers_;
-    }
-    // The place of a layer point hangs on the front point of its fan too, which its cell may not have.
-    bool ofLayer(std::int32_t point) const { return static_cast<std::size_t>(point) >= core_; }
-    std::size_t frontOf(std::size_t node) const { return static_cast<std::size_t>(corePoint_[node - core_]); }
-    Vec3 place(std::size_t n) const { return beta[n] == 1.0f ? fitted[n] : start[n] + (fitted[n] - start[n]) * double(beta[n]); }
-    void store(Front& front) const {
-        for (std::size_t i = 0; i < front.movedPoints.size(); ++i) front.movedTo[i] = place(static_cast<std::size_t>(front.movedPoints[i]));
-        for (std::size_t v = 0; v < front.front.size(); ++v) {
-            const Vec3 b = place(core_ + v);
-            front.front[v] = place(static_cast<std::size_t>(front.corePoint[v]));
-            front.mesh.set_point(FrontMesh::VertexHandle(static_cast<int>(v)), {b.x, b.y, b.z});
-        }
-    }
-
-  private:
-    std::size_t core_, layers_;
-    std::vector<std::int32_t> corePoint_;
-
-  public:
-    std::vector<Vec3> start, fitted;
-    std::vector<float> beta;
-};
-
-std::vector<std::int32_t> badCells(const PolyMesh& mesh, const Rows& cellFaces) {
-    const MeshGeometry g = measureGeometry(mesh, cellFaces);
-    std::vector<std::uint8_t> bad(static_cast<std::size_t>(mesh.cells), 0);
-    parallelFor(bad.size(), [&](std::size_t c) {
-        const auto cell = static_cast<std::int32_t>(c);
-        bool wrong = !(g.cellVolume[c] > 0);
-        for (std::int32_t f : cellFaces[cell]) {
-            const auto i = static_cast<std::size_t>(f);
-            const Vec3 arm = g.faceCentre[i] - g.cellCentre[c];
-            const double sign = mesh.owner[i] == cell ? 1 : -1;
-            wrong = wrong || !(sign * dot(g.faceArea[i], arm) > flat * norm(g.faceArea[i]) * norm(arm));
-        }
-        bad[c] = wrong;
-    });
-    std::vector<std::int32_t> cells;
-    for (std::size_t c = 0; c < bad.size(); ++c) {
-        if (bad[c]) cells.push_back(static_cast<std::int32_t>(c));
-    }
-    return cells;
-}
-
-// f(node) for the nodes of a cell, with repeats.
-template <class F>
-void forNodes(const PolyMesh& mesh, const Rows& cellFaces, const Nodes& nodes, std::int32_t cell, const F& f) {
-    for (std::int32_t face : cellFaces[cell]) {
-        for (std::int32_t p : mesh.face(face)) {
-            f(nodes.of(p));
-            if (nodes.ofLayer(p)) f(nodes.frontOf(nodes.of(p)));
-        }
-    }
-}
-
-// Cells at both sides of faces beyond the limits, and cells of small determinant.
-std::vector<std::int32_t> poorCells(const PolyMesh& mesh, std::int64_t& faults) {
-    QualityLimits limits; // a little inside those that the report judges by
+QualityLimits strictLimits() { // a little inside those that the report judges by
+    QualityLimits limits;
     limits.nonOrthogonality = 68;
     limits.skewness = 3.8;
     limits.faceWeight = 0.055;
     limits.volumeRatio = 0.02;
     limits.determinant = 0.0015;
-    const QualityReport report = measureQuality(mesh, limits);
-    std::vector<std::int32_t> cells;
-    faults = 0;
-    for (const QualityCheck& check : report.checks) {
-        const bool ofFaces = check.name == "nonOrthoFaces" || check.name == "skewFaces" || check.name == "lowWeightFaces" || check.name == "lowVolRatioFaces";
-        if (!ofFaces && check.name != "underdeterminedCells") continue;
-        faults += check.count;
-        for (std::int32_t id : check.ids) {
-            cells.push_back(ofFaces ? mesh.owner[static_cast<std::size_t>(id)] : id);
-            if (ofFaces && id < mesh.internalFaces()) cells.push_back(mesh.neighbour[static_cast<std::size_t>(id)]);
-        }
-    }
-    std::sort(cells.begin(), cells.end());
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-    return cells;
+    return limits;
 }
 
-// Bounds the difference of beta inside cells, starting from cells whose points have just stepped back.
-void spread(const PolyMesh& mesh, const Rows& cellFaces, Nodes& nodes, std::vector<std::int32_t> cells) {
-    std::vector<std::uint8_t> queued(static_cast<std::size_t>(mesh.cells), 0);
+// The way of a point from the start of the fit to its end.
+struct Path {
+    Vec3 start, fitted;
+    Vec3 at(float beta) const { return beta == 1.0f ? fitted : start + (fitted - start) * double(beta); }
+};
+
+// The nodes that the fit has placed: core points, then the wall point of each fan. Each has a beta, the share of its
+// way that it has gone; a way only where it has moved.
+class Nodes {
+  public:
+    Nodes(const Front& front, const LatticeMesh& lattice, const LayerStack& layers, double thickness)
+        : front_(front), layers_(layers), core_(static_cast<std::size_t>(lattice.pointCount())) {
+        const std::vector<Vec3> start = lattice.latticePoints();
+        const auto startOf = [&](std::int32_t point) { return start[static_cast<std::size_t>(point)]; };
+        const std::size_t fans = front.front.size();
+        behind_.reserve(front.movedPoints.size()), ahead_.reserve(fans), wall_.reserve(fans);
+        for (std::size_t i = 0; i < front.movedPoints.size(); ++i) behind_.push_back({startOf(front.movedPoints[i]), front.movedTo[i]});
+        for (std::size_t v = 0; v < fans; ++v) {
+            const std::array<std::int8_t, 3>& d = front.direction[v];
+            const Vec3 f = startOf(front.corePoint[v]);
+            const auto& p = front.mesh.point(FrontMesh::VertexHandle(static_cast<int>(v)));
+            ahead_.push_back({f, front.front[v]});
+            wall_.push_back({f + Vec3{double(d[0]), double(d[1]), double(d[2])} * (thickness * front.h[v]), {p[0], p[1], p[2]}});
+        }
+        beta.assign(core_ + fans, 1.0f);
+        touched_.assign(beta.size(), 0);
+    }
+    // Of a mesh point; the points of a layer belong to the fan.
+    std::size_t of(std::int32_t point) const {
+        const auto p = static_cast<std::size_t>(point);
+        return p < core_ ? p : core_ + (p - core_) / static_cast<std::size_t>(layers_.count);
+    }
+    // The place of a layer point hangs on the front point of its fan too, which its cell may not have.
+    bool ofLayer(std::int32_t point) const { return static_cast<std::size_t>(point) >= core_; }
+    std::size_t frontOf(std::size_t node) const { return static_cast<std::size_t>(front_.corePoint[node - core_]); }
+
+    void set(std::size_t n, float value) {
+        if (beta[n] == value) return;
+        beta[n] = value;
+        touched_[n] = 1;
+    }
+    // Puts the mesh points of all nodes set since the last time where they belong; gives their numbers.
+    std::vector<std::int32_t> place(std::vector<Vec3>& points);
+    void store(Front& front) const;
+
+    std::vector<float> beta; // per node; to be changed by set()
+
+  private:
+    const Front& front_;
+    const LayerStack& layers_;
+    std::size_t core_;
+    std::vector<Path> behind_;             // as front.movedPoints
+    std::vector<Path> ahead_, wall_; // per fan
+    std::vector<std::uint8_t> touched_;    // per node
+};
+
+std::vector<std::int32_t> Nodes::place(std::vector<Vec3>& points) {
+    std::vector<std::int32_t> moved;
+    const auto put = [&](std::size_t p, const Path& path) {
+        points[p] = path.at(beta[p]);
+        moved.push_back(static_cast<std::int32_t>(p));
+    };
+    for (std::size_t i = 0; i < behind_.size(); ++i) {
+        const auto p = static_cast<std::size_t>(front_.movedPoints[i]);
+        if (touched_[p]) put(p, behind_[i]);
+    }
+    const auto n = static_cast<std::size_t>(layers_.count);
+    for (std::size_t v = 0; v < wall_.size(); ++v) {
+        const auto p = static_cast<std::size_t>(front_.corePoint[v]);
+        if (touched_[p]) put(p, ahead_[v]);
+        if (!touched_[p] && !touched_[core_ + v]) continue;
+        const std::size_t first = core_ + v * n;
+        placeLayers(layers_, v, ahead_[v].at(beta[p]), wall_[v].at(beta[core_ + v]), &points[first]);
+        for (std::size_t k = 0; k < n; ++k) moved.push_back(static_cast<std::int32_t>(first + k));
+    }
+    std::fill(touched_.begin(), touched_.end(), std::uint8_t(0));
+    return moved;
+}
+
+void Nodes::store(Front& front) const {
+    for (std::size_t i = 0; i < behind_.size(); ++i) front.movedTo[i] = behind_[i].at(beta[static_cast<std::size_t>(front.movedPoints[i])]);
+    for (std::size_t v = 0; v < wall_.size(); ++v) {
+        const Vec3 b = wall_[v].at(beta[core_ + v]);
+        front.front[v] = ahead_[v].at(beta[static_cast<std::size_t>(front.corePoint[v])]);
+        front.mesh.set_point(FrontMesh::VertexHandle(static_cast<int>(v)), {b.x, b.y, b.z});
+    }
+}
+
+// One repair: the mesh, how far its nodes have gone, and what is wrong with it now.
+class Retreat {
+  public:
+    Retreat(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults, Nodes& nodes)
+        : mesh_(mesh), cellFaces_(cellFaces), faults_(faults), nodes_(nodes), visited_(static_cast<std::size_t>(mesh.cells), 0),
+          queued_(static_cast<std::size_t>(mesh.cells), 0) {}
+
+    // The points of the cells step back, those around them follow, and the mesh is measured again there.
+    void step(const std::vector<std::int32_t>& cells, float step);
+    // All nodes to another state of before.
+    void restore(const std::vector<float>& beta);
+
+  private:
+    // f(node) for the nodes of a cell, with repeats.
+    template <class F>
+    void forNodes(std::int32_t cell, const F& f) const {
+        for (std::int32_t face : cellFaces_[cell]) {
+            for (std::int32_t p : mesh_.face(face)) {
+                const std::size_t n = nodes_.of(p);
+                f(n);
+                if (nodes_.ofLayer(p)) f(nodes_.frontOf(n));
+            }
+        }
+    }
+    std::vector<std::int32_t> spread(std::vector<std::int32_t> cells);
+
+    PolyMesh& mesh_;
+    const Rows& cellFaces_;
+    MeshFaults& faults_;
+    Nodes& nodes_;
+    std::vector<std::uint8_t> visited_, queued_; // per cell: in any step; in this one
+};
+
+// Bounds the difference of beta inside cells, starting from cells whose points have just stepped back. Gives all cells
+// that it looked at.
+std::vector<std::int32_t> Retreat::spread(std::vector<std::int32_t> cells) {
+    std::vector<std::int32_t> all;
     for (int ring = 0; ring < 4 && !cells.empty(); ++ring) {
         std::vector<std::int32_t> next;
         for (std::int32_t c : cells) {
             float low = 1;
-            forNodes(mesh, cellFaces, nodes, c, [&](std::size_t n) { low = std::min(low, nodes.beta[n]); });
-            forNodes(mesh, cellFaces, nodes, c, [&](std::size_t n) { nodes.beta[n] = std::min(nodes.beta[n], low + float(slope)); });
-            for (std::int32_t f : cellFaces[c]) {
-                if (f >= mesh.internalFaces()) continue;
+            forNodes(c, [&](std::size_t n) { low = std::min(low, nodes_.beta[n]); });
+            forNodes(c, [&](std::size_t n) { nodes_.set(n, std::min(nodes_.beta[n], low + float(slope))); });
+            for (std::int32_t f : cellFaces_[c]) {
+                if (f >= mesh_.internalFaces()) continue;
                 const auto i = static_cast<std::size_t>(f);
-                const std::int32_t other = mesh.owner[i] == c ? mesh.neighbour[i] : mesh.owner[i];
-                if (!queued[static_cast<std::size_t>(other)]) queued[static_cast<std::size_t>(other)] = 1, next.push_back(other);
+                const std::int32_t other = mesh_.owner[i] == c ? mesh_.neighbour[i] : mesh_.owner[i];
+                if (!queued_[static_cast<std::size_t>(other)]) queued_[static_cast<std::size_t>(other)] = 1, next.push_back(other);
             }
         }
+        all.insert(all.end(), cells.begin(), cells.end());
         cells = std::move(next);
     }
+    for (std::int32_t c : all) queued_[static_cast<std::size_t>(c)] = 0;
+    for (std::int32_t c : cells) queued_[static_cast<std::size_t>(c)] = 0;
+    return all;
 }
 
-// The points of the cells step back, and the front and the mesh follow.
-void retreat(const std::vector<std::int32_t>& cells, float step, PolyMesh& mesh, const Rows& cellFaces, Nodes& nodes, Front& front,
-             const LatticeMesh& lattice, const LayerStack& layers) {
-    std::vector<std::uint8_t> done(nodes.beta.size(), 0); // each node steps back once a round
-    for (std::int32_t c : cells) {
-        forNodes(mesh, cellFaces, nodes, c, [&](std::size_t n) {
-            if (done[n]) return;
-            done[n] = 1;
-            nodes.beta[n] = std::max(0.0f, nodes.beta[n] - step);
-        });
+void Retreat::step(const std::vector<std::int32_t>& cells, float step) {
+    std::vector<std::size_t> stepping; // each node steps back once
+    for (std::int32_t c : cells) forNodes(c, [&](std::size_t n) { stepping.push_back(n); });
+    std::sort(stepping.begin(), stepping.end());
+    stepping.erase(std::unique(stepping.begin(), stepping.end()), stepping.end());
+    for (std::size_t n : stepping) nodes_.set(n, std::max(0.0f, nodes_.beta[n] - step));
+    const std::vector<std::int32_t> seeds = spread(cells);
+    for (std::int32_t c : seeds) visited_[static_cast<std::size_t>(c)] = 1;
+    faults_.update(nodes_.place(mesh_.points), seeds);
+}
+
+void Retreat::restore(const std::vector<float>& beta) {
+    for (std::size_t n = 0; n < beta.size(); ++n) nodes_.set(n, beta[n]);
+    std::vector<std::int32_t> seeds;
+    for (std::size_t c = 0; c < visited_.size(); ++c) {
+        if (visited_[c]) seeds.push_back(static_cast<std::int32_t>(c));
     }
-    spread(mesh, cellFaces, nodes, cells);
-    nodes.store(front);
-    placePoints(lattice, front, layers, mesh.points);
+    faults_.update(nodes_.place(mesh_.points), seeds);
 }
 
 } // namespace
@@ -161,40 +194,41 @@ void retreat(const std::vector<std::int32_t>& cells, float step, PolyMesh& mesh,
 RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, const LayerStack& layers, double startThickness) {
     RepairSummary summary;
     const Rows cellFaces = buildCellFaces(mesh);
-    std::vector<std::int32_t> bad = badCells(mesh, cellFaces);
+    MeshFaults faults(mesh, cellFaces, strictLimits());
+    std::vector<std::int32_t> bad = faults.badCells();
     summary.badCells = static_cast<std::int64_t>(bad.size());
-    std::vector<std::int32_t> poor = bad.empty() ? poorCells(mesh, summary.poorFaces) : bad;
+    std::vector<std::int32_t> poor = bad.empty() ? faults.poorCells(summary.poorFaces) : bad;
     if (poor.empty()) return summary;
     Nodes nodes(front, lattice, layers, startThickness);
+    Retreat retreat(mesh, cellFaces, faults, nodes);
     const auto makeValid = [&] {
         for (int round = 0; !bad.empty() && round < lastRound; ++round, ++summary.rounds) {
-            retreat(bad, round < gentleRounds ? float(stepBack) : 1.0f, mesh, cellFaces, nodes, front, lattice, layers);
-            bad = badCells(mesh, cellFaces);
+            retreat.step(bad, round < gentleRounds ? float(stepBack) : 1.0f);
+            bad = faults.badCells();
         }
     };
     if (!bad.empty()) {
         makeValid();
-        poor = poorCells(mesh, summary.poorFaces);
+        poor = faults.poorCells(summary.poorFaces);
     }
     // Retreat for quality as long as it helps; the best state counts.
     summary.poorRemaining = summary.poorFaces;
     std::vector<float> best = nodes.beta;
     for (int round = 0; !poor.empty() && bad.empty() && round < qualityRounds; ++round, ++summary.rounds) {
-        retreat(poor, float(qualityStep), mesh, cellFaces, nodes, front, lattice, layers);
-        bad = badCells(mesh, cellFaces);
+        retreat.step(poor, float(qualityStep));
+        bad = faults.badCells();
         makeValid();
-        std::int64_t faults = 0;
-        poor = poorCells(mesh, faults);
-        if (!bad.empty() || faults >= summary.poorRemaining) continue;
-        summary.poorRemaining = faults;
+        std::int64_t count = 0;
+        poor = faults.poorCells(count);
+        if (!bad.empty() || count >= summary.poorRemaining) continue;
+        summary.poorRemaining = count;
         best = nodes.beta;
     }
     if (best != nodes.beta) {
-        nodes.beta = best;
-        nodes.store(front);
-        placePoints(lattice, front, layers, mesh.points);
-        bad = badCells(mesh, cellFaces);
+        retreat.restore(best);
+        bad = faults.badCells();
     }
+    nodes.store(front);
     for (float b : nodes.beta) summary.retracted += b < 1;
     summary.remaining = static_cast<std::int64_t>(bad.size());
     return summary;

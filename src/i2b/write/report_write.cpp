@@ -66,7 +66,11 @@ std::string reportText(const RunReport& r) {
     for (const ReportPart& part : r.parts)
         parts.push_back({{"name", part.name}, {"triangles", part.triangles}});
     for (const StageRecord& s : r.stages)
-        stages.push_back({{"name", s.name}, {"seconds", number(s.seconds)}, {"items", s.items}});
+        stages.push_back({{"name", s.name},
+                          {"seconds", number(s.seconds)},
+                          {"items", s.items},
+                          {"rss_bytes", s.rssBytes},
+                          {"peak_rss_bytes", s.peakRssBytes}});
     for (const Patch& p : r.patches)
         patches.push_back({{"name", p.name}, {"type", p.type}, {"faces", p.count}});
     for (const Region& region : r.regions) regions.push_back(regionJson(region, r.parts));

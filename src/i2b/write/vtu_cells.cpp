@@ -1,7 +1,5 @@
 #include "i2b/write/vtu_cells.h"
-#include "i2b/core/parallel.h"
 #include <algorithm>
-#include <atomic>
 
 namespace i2b {
 namespace {
@@ -107,38 +105,6 @@ CellShape cone(const PolyMesh& mesh, Span cellFaces, std::int32_t cell, std::int
 }
 
 } // namespace
-
-CellFaces cellFacesOf(const PolyMesh& mesh) {
-    const auto cells = static_cast<std::size_t>(mesh.cells);
-    CellFaces result;
-    result.offsets.assign(cells + 1, 0);
-    const auto forSides = [&](const auto& body) {
-        parallelFor(
-            mesh.owner.size(),
-            [&](std::size_t f) {
-                body(static_cast<std::size_t>(mesh.owner[f]), f);
-                if (f < mesh.neighbour.size()) body(static_cast<std::size_t>(mesh.neighbour[f]), f);
-            },
-            4096);
-    };
-    forSides([&](std::size_t c, std::size_t) {
-        std::atomic_ref(result.offsets[c]).fetch_add(1, std::memory_order_relaxed);
-    });
-    result.faces.resize(exclusiveScan(result.offsets));
-    std::vector<std::uint32_t> next(result.offsets.begin(), result.offsets.end());
-    forSides([&](std::size_t c, std::size_t f) {
-        const std::uint32_t at = std::atomic_ref(next[c]).fetch_add(1, std::memory_order_relaxed);
-        result.faces[at] = static_cast<std::int32_t>(f);
-    });
-    // The threads' order of arrival is not ours.
-    parallelFor(
-        cells,
-        [&](std::size_t c) {
-            std::sort(result.faces.begin() + result.offsets[c], result.faces.begin() + result.offsets[c + 1]);
-        },
-        4096);
-    return result;
-}
 
 CellShape shapeOf(const PolyMesh& mesh, std::span<const std::int32_t> cellFaces, std::int32_t cell) {
     if (cellFaces.size() < 4 || cellFaces.size() > 6) return {};

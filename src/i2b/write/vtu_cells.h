@@ -19,18 +19,6 @@ namespace i2b {
 // VTK's numbers of cell types.
 enum class VtkCell : std::uint8_t { tetra = 10, hexahedron = 12, wedge = 13, pyramid = 14, polyhedron = 42 };
 
-// Faces of each cell, ascending: faces[offsets[c] .. offsets[c+1]).
-struct CellFaces {
-    std::vector<std::uint32_t> offsets; // cells + 1
-    std::vector<std::int32_t> faces;
-
-    std::span<const std::int32_t> of(std::int32_t cell) const {
-        return {faces.data() + offsets[static_cast<std::size_t>(cell)],
-                faces.data() + offsets[static_cast<std::size_t>(cell) + 1]};
-    }
-};
-CellFaces cellFacesOf(const PolyMesh& mesh);
-
 // The type of a cell and, unless it is a polyhedron, its points in VTK's order.
 struct CellShape {
     VtkCell type = VtkCell::polyhedron;

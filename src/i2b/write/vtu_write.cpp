@@ -1,4 +1,5 @@
 #include "i2b/write/vtu_write.h"
+#include "i2b/assemble/mesh_topology.h"
 #include "i2b/core/error.h"
 #include "i2b/core/parallel.h"
 #include "i2b/write/output_file.h"
@@ -68,60 +69,78 @@ Array plainArray(const std::string& name, std::span<const T> values) {
             }};
 }
 
-// What is known of each cell before anything is written: its type and where its lists end.
-struct CellTable {
-    CellFaces faces;
-    std::vector<std::uint8_t> types;
-    std::vector<std::int64_t> pointsEnd; // of its points in connectivity
-    std::vector<std::int64_t>
-        facesEnd; // of its face stream; the same as the cell's before unless a polyhedron
-    bool polyhedra() const { return !facesEnd.empty() && facesEnd.back() > 0; }
+// Where lists that lie one after the other end, four bytes a list: within blocks, and where those begin.
+class ListEnds {
+  public:
+    explicit ListEnds(std::size_t lists) : within_(lists, 0), blocks_(lists / block + 1, 0) {}
+    void setLength(std::size_t list, std::size_t length) { within_[list] = static_cast<std::uint32_t>(length); }
+    void sum() { // lengths to ends
+        std::int64_t total = 0;
+        for (std::size_t b = 0; b < blocks_.size(); ++b) {
+            blocks_[b] = total;
+            std::uint32_t sum = 0;
+            for (std::size_t i = b * block; i < std::min(within_.size(), (b + 1) * block); ++i) within_[i] = sum += within_[i];
+            total += sum;
+        }
+    }
+    std::size_t size() const { return within_.size(); }
+    std::int64_t operator[](std::size_t list) const { return blocks_[list / block] + within_[list]; }
+    std::int64_t start(std::size_t list) const { return list == 0 ? 0 : (*this)[list - 1]; }
+    std::int64_t back() const { return start(size()); }
+    std::size_t firstBeyond(std::int64_t place) const { // list whose end is the first greater than place
+        const auto at = std::upper_bound(blocks_.begin(), blocks_.end(), place);
+        auto list = static_cast<std::size_t>(at - blocks_.begin() - 1) * block;
+        while (list < size() && (*this)[list] <= place) ++list;
+        return list;
+    }
+
+  private:
+    static constexpr std::size_t block = 1024;
+    std::vector<std::uint32_t> within_;
+    std::vector<std::int64_t> blocks_;
 };
 
-void inclusiveScan(std::vector<std::int64_t>& counts) {
-    std::int64_t sum = 0;
-    for (std::int64_t& c : counts) c = sum += c;
-}
+// What is known of each cell before anything is written: its type and where its lists end.
+struct CellTable {
+    Rows faces;
+    std::vector<std::uint8_t> types;
+    ListEnds pointsEnd; // of its points in connectivity
+    ListEnds facesEnd;  // of its face stream; the same as the cell's before unless a polyhedron
+    bool polyhedra() const { return facesEnd.back() > 0; }
+};
 
 CellTable buildCellTable(const PolyMesh& mesh) {
-    CellTable table;
-    table.faces = cellFacesOf(mesh);
     const auto n = static_cast<std::size_t>(mesh.cells);
-    table.types.resize(n);
-    table.pointsEnd.resize(n);
-    table.facesEnd.resize(n);
+    CellTable table{buildCellFaces(mesh), std::vector<std::uint8_t>(n), ListEnds(n), ListEnds(n)};
     parallelChunks(n, 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
         std::vector<std::int32_t> points;
         for (std::size_t c = begin; c < end; ++c) {
             const auto cell = static_cast<std::int32_t>(c);
-            const auto faces = table.faces.of(cell);
+            const auto faces = table.faces[cell];
             const CellShape shape = shapeOf(mesh, faces, cell);
             table.types[c] = static_cast<std::uint8_t>(shape.type);
-            table.pointsEnd[c] = static_cast<std::int64_t>(shape.pointCount);
+            table.pointsEnd.setLength(c, shape.pointCount);
             if (shape.type != VtkCell::polyhedron) continue;
             cellPoints(mesh, faces, points);
-            table.pointsEnd[c] = static_cast<std::int64_t>(points.size());
+            table.pointsEnd.setLength(c, points.size());
             std::size_t stream = 1;
             for (const std::int32_t f : faces) stream += 1 + mesh.face(f).size();
-            table.facesEnd[c] = static_cast<std::int64_t>(stream);
+            table.facesEnd.setLength(c, stream);
         }
     });
-    inclusiveScan(table.pointsEnd);
-    inclusiveScan(table.facesEnd);
+    table.pointsEnd.sum();
+    table.facesEnd.sum();
     return table;
 }
 
 // Elements [begin, end) of lists that lie one after the other, cell after cell: makes the lists of the cells
 // that the range touches and copies what lies inside it.
 template <class Make>
-void fillLists(const std::vector<std::int64_t>& ends, std::size_t begin, std::size_t end, char* out,
-               const Make& make) {
+void fillLists(const ListEnds& ends, std::size_t begin, std::size_t end, char* out, const Make& make) {
     std::vector<std::int32_t> list;
-    auto c = static_cast<std::size_t>(
-        std::upper_bound(ends.begin(), ends.end(), static_cast<std::int64_t>(begin)) - ends.begin());
+    std::size_t c = ends.firstBeyond(static_cast<std::int64_t>(begin));
     for (std::size_t at = begin; at < end; ++c) {
-        const std::size_t first = c == 0 ? 0 : static_cast<std::size_t>(ends[c - 1]);
-        const auto last = static_cast<std::size_t>(ends[c]);
+        const auto first = static_cast<std::size_t>(ends.start(c)), last = static_cast<std::size_t>(ends[c]);
         if (first == last) continue;
         list.clear();
         make(static_cast<std::int32_t>(c), list);
@@ -133,12 +152,12 @@ void fillLists(const std::vector<std::int64_t>& ends, std::size_t begin, std::si
 }
 
 Array connectivityArray(const PolyMesh& mesh, const CellTable& table) {
-    const std::size_t n = table.pointsEnd.empty() ? 0 : static_cast<std::size_t>(table.pointsEnd.back());
+    const auto n = static_cast<std::size_t>(table.pointsEnd.back());
     return {attributes<std::int32_t>("connectivity"), n, sizeof(std::int32_t),
             [&](std::size_t begin, std::size_t end, char* out) {
                 fillLists(table.pointsEnd, begin, end, out,
                           [&](std::int32_t cell, std::vector<std::int32_t>& list) {
-                              const auto faces = table.faces.of(cell);
+                              const auto faces = table.faces[cell];
                               if (table.types[static_cast<std::size_t>(cell)] ==
                                   static_cast<std::uint8_t>(VtkCell::polyhedron))
                                   return cellPoints(mesh, faces, list);
@@ -155,14 +174,14 @@ Array facesArray(const PolyMesh& mesh, const CellTable& table) {
             sizeof(std::int32_t), [&](std::size_t begin, std::size_t end, char* out) {
                 fillLists(table.facesEnd, begin, end, out,
                           [&](std::int32_t cell, std::vector<std::int32_t>& list) {
-                              appendFaceStream(mesh, table.faces.of(cell), cell, list);
+                              appendFaceStream(mesh, table.faces[cell], cell, list);
                           });
             }};
 }
 
 // Offsets with T wide enough for the last of them; -1 where the cell has none of its own (faceoffsets).
 template <class T>
-Array offsetsArray(const std::string& name, const std::vector<std::int64_t>& ends,
+Array offsetsArray(const std::string& name, const ListEnds& ends,
                    const CellTable* polyhedraOf) {
     return {attributes<T>(name), ends.size(), sizeof(T),
             [&ends, polyhedraOf](std::size_t begin, std::size_t end, char* out) {
@@ -175,9 +194,9 @@ Array offsetsArray(const std::string& name, const std::vector<std::int64_t>& end
             }};
 }
 
-Array offsets(const std::string& name, const std::vector<std::int64_t>& ends,
+Array offsets(const std::string& name, const ListEnds& ends,
               const CellTable* polyhedraOf = nullptr) {
-    const bool small = ends.empty() || ends.back() <= 0x7fffffff;
+    const bool small = ends.back() <= 0x7fffffff;
     return small ? offsetsArray<std::int32_t>(name, ends, polyhedraOf)
                  : offsetsArray<std::int64_t>(name, ends, polyhedraOf);
 }

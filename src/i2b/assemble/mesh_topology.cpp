@@ -1,4 +1,4 @@
-#include "i2b/quality/mesh_topology.h"
+#include "i2b/assemble/mesh_topology.h"
 #include "i2b/core/parallel.h"
 #include <algorithm>
 #include <atomic>

@@ -1,0 +1,142 @@
+#include "i2b/quality/mesh_faults.h"
+#include "i2b/core/parallel.h"
+#include "i2b/quality/measures.h"
+#include "i2b/quality/tally.h"
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace i2b {
+namespace {
+
+using Index = std::size_t;
+constexpr double flat = 1e-9; // a pyramid below this part of its cell's size counts as wrong
+
+bool isBad(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::span<const FaceShape> shapes, std::int32_t cell,
+           const CellMoments& moments) {
+    if (!(moments.volume > 0)) return true;
+    for (Index i = 0; i < faces.size(); ++i) {
+        const Vec3 arm = shapes[i].centre - moments.centre;
+        const double sign = mesh.owner[Index(faces[i])] == cell ? 1 : -1;
+        if (!(sign * dot(shapes[i].area, arm) > flat * norm(shapes[i].area) * norm(arm))) return true;
+    }
+    return false;
+}
+
+} // namespace
+
+MeshFaults::MeshFaults(const PolyMesh& mesh, const Rows& cellFaces, const QualityLimits& limits)
+    : mesh_(mesh), cellFaces_(cellFaces), limits_(limits),
+      severeCosine_(std::cos(limits.nonOrthogonality * std::numbers::pi / 180)), moments_(Index(mesh.cells)),
+      cellFlags_(Index(mesh.cells), 0), faceFlags_(Index(mesh.faces()), 0), moved_(mesh.points.size(), 0),
+      changed_(Index(mesh.cells), 0) {
+    parallelChunks(moments_.size(), 2048, [&](Index begin, Index end, Index) {
+        CellFaceShapes shapes(mesh_);
+        for (Index c = begin; c < end; ++c) measureCellAt(static_cast<std::int32_t>(c), shapes);
+    });
+    parallelFor(faceFlags_.size(), [&](Index f) { measureFaceAt(static_cast<std::int32_t>(f)); });
+}
+
+void MeshFaults::measureCellAt(std::int32_t cell, CellFaceShapes& faceShapes) {
+    const std::span<const std::int32_t> faces = cellFaces_[cell];
+    const std::span<const FaceShape> shapes = faceShapes.of(faces);
+    CellMoments& moments = moments_[Index(cell)];
+    moments = measureCell(mesh_, faces, shapes, cell);
+    const bool low = cellDeterminant(mesh_, faces, shapes, Directions()) < limits_.determinant;
+    cellFlags_[Index(cell)] =
+        static_cast<std::uint8_t>((isBad(mesh_, faces, shapes, cell, moments) ? bad : 0) | (low ? lowDeterminant : 0));
+}
+
+void MeshFaults::measureFaceAt(std::int32_t face) {
+    const FaceShape shape = measureFace(mesh_, face);
+    const CellMoments& own = moments_[Index(mesh_.owner[Index(face)])];
+    const Vec3* neighbour = nullptr;
+    int flags = 0;
+    if (face < mesh_.internalFaces()) {
+        const CellMoments& nei = moments_[Index(mesh_.neighbour[Index(face)])];
+        const PairValues values = pairValues(shape, own, nei);
+        neighbour = &nei.centre;
+        flags = (values.ortho < severeCosine_ ? nonOrthogonal : 0) | (values.weight < limits_.faceWeight ? lowWeight : 0) |
+                (values.ratio < limits_.volumeRatio ? lowRatio : 0);
+    }
+    if (faceSkewness(mesh_, face, shape, own.centre, neighbour, limits_.skewness) > limits_.skewness) flags |= skew;
+    faceFlags_[Index(face)] = static_cast<std::uint8_t>(flags);
+}
+
+bool MeshFaults::hasMoved(std::int32_t face) const {
+    const auto v = mesh_.face(face);
+    return std::any_of(v.begin(), v.end(), [&](std::int32_t p) { return moved_[Index(p)] != 0; });
+}
+
+// All cells that use a moved point. The cells at a point hang together through faces at the point, so all of them are
+// found from one.
+std::vector<std::int32_t> MeshFaults::cellsAround(const std::vector<std::int32_t>& seeds) {
+    std::vector<std::int32_t> cells;
+    const auto add = [&](std::int32_t cell) {
+        if (changed_[Index(cell)]) return;
+        changed_[Index(cell)] = 1;
+        cells.push_back(cell);
+    };
+    for (const std::int32_t cell : seeds) {
+        const auto faces = cellFaces_[cell];
+        if (std::any_of(faces.begin(), faces.end(), [&](std::int32_t f) { return hasMoved(f); })) add(cell);
+    }
+    for (Index i = 0; i < cells.size(); ++i) {
+        for (const std::int32_t f : cellFaces_[cells[i]]) {
+            if (f >= mesh_.internalFaces() || !hasMoved(f)) continue;
+            add(mesh_.owner[Index(f)]);
+            add(mesh_.neighbour[Index(f)]);
+        }
+    }
+    return cells;
+}
+
+void MeshFaults::update(const std::vector<std::int32_t>& movedPoints, const std::vector<std::int32_t>& seeds) {
+    for (const std::int32_t p : movedPoints) moved_[Index(p)] = 1;
+    std::vector<std::int32_t> cells = cellsAround(seeds);
+    std::sort(cells.begin(), cells.end());
+    parallelChunks(cells.size(), 256, [&](Index begin, Index end, Index) {
+        CellFaceShapes shapes(mesh_);
+        for (Index i = begin; i < end; ++i) measureCellAt(cells[i], shapes);
+    });
+    parallelFor(cells.size(), [&](Index i) {
+        for (const std::int32_t f : cellFaces_[cells[i]]) {
+            const std::int32_t owner = mesh_.owner[Index(f)];
+            if (owner == cells[i] || !changed_[Index(owner)]) measureFaceAt(f); // each face by one of its cells
+        }
+    });
+    for (const std::int32_t c : cells) changed_[Index(c)] = 0;
+    for (const std::int32_t p : movedPoints) moved_[Index(p)] = 0;
+}
+
+std::vector<std::int32_t> MeshFaults::badCells() const {
+    std::vector<std::int32_t> cells;
+    for (Index c = 0; c < cellFlags_.size(); ++c)
+        if (cellFlags_[c] & bad) cells.push_back(static_cast<std::int32_t>(c));
+    return cells;
+}
+
+std::vector<std::int32_t> MeshFaults::poorCells(std::int64_t& faults) const {
+    constexpr std::array<std::uint8_t, 4> ofFaces{nonOrthogonal, skew, lowWeight, lowRatio};
+    std::array<Index, 4> found{};
+    Index determinants = 0;
+    std::vector<std::int32_t> cells;
+    for (Index f = 0; f < faceFlags_.size(); ++f) {
+        if (faceFlags_[f] == 0) continue;
+        bool named = false;
+        for (Index k = 0; k < ofFaces.size(); ++k)
+            if (faceFlags_[f] & ofFaces[k]) named |= found[k]++ < Tally::idLimit;
+        if (!named) continue;
+        cells.push_back(mesh_.owner[f]);
+        if (f < mesh_.neighbour.size()) cells.push_back(mesh_.neighbour[f]);
+    }
+    for (Index c = 0; c < cellFlags_.size(); ++c)
+        if ((cellFlags_[c] & lowDeterminant) && determinants++ < Tally::idLimit) cells.push_back(static_cast<std::int32_t>(c));
+    faults = static_cast<std::int64_t>(determinants);
+    for (const Index n : found) faults += static_cast<std::int64_t>(n);
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    return cells;
+}
+
+} // namespace i2b

@@ -1,0 +1,40 @@
+// What repair looks for in a mesh: cells that are wrong, and what is over the limits of quality. Measured once for the
+// whole mesh and afterwards only where points have moved, with the same outcome.
+#pragma once
+#include "i2b/quality/mesh_geometry.h"
+#include "i2b/quality/quality_report.h"
+
+namespace i2b {
+
+class MeshFaults {
+  public:
+    // Keeps references. limits: those of orthogonality, skewness, weight, volume ratio and determinant count.
+    MeshFaults(const PolyMesh& mesh, const Rows& cellFaces, const QualityLimits& limits);
+
+    // After points have moved. seeds: cells among which every moved point has one that uses it.
+    void update(const std::vector<std::int32_t>& movedPoints, const std::vector<std::int32_t>& seeds);
+
+    // Cells without a positive volume, or with a face pyramid that points the wrong way or is next to nothing.
+    std::vector<std::int32_t> badCells() const;
+    // Cells at both sides of the faces over the limits and cells over theirs: of each kind of fault those that come
+    // first, as many as a report names. faults: how many there are.
+    std::vector<std::int32_t> poorCells(std::int64_t& faults) const;
+
+  private:
+    enum CellFlag : std::uint8_t { bad = 1, lowDeterminant = 2 };
+    enum FaceFlag : std::uint8_t { nonOrthogonal = 1, skew = 2, lowWeight = 4, lowRatio = 8 };
+    void measureCellAt(std::int32_t cell, CellFaceShapes& shapes);
+    void measureFaceAt(std::int32_t face);
+    std::vector<std::int32_t> cellsAround(const std::vector<std::int32_t>& seeds);
+    bool hasMoved(std::int32_t face) const;
+
+    const PolyMesh& mesh_;
+    const Rows& cellFaces_;
+    QualityLimits limits_;
+    double severeCosine_;
+    RawVector<CellMoments> moments_;
+    std::vector<std::uint8_t> cellFlags_, faceFlags_;
+    std::vector<std::uint8_t> moved_, changed_; // per point, per cell; clear between updates
+};
+
+} // namespace i2b
