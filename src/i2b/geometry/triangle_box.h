@@ -17,6 +17,13 @@
 
 namespace i2b {
 
+// Floor and ceiling of what fits an int32, without the library call that they are before SSE 4.1.
+inline std::int32_t floorToInt(double x) {
+    const auto i = static_cast<std::int32_t>(x);
+    return i - (static_cast<double>(i) > x ? 1 : 0);
+}
+inline std::int32_t ceilToInt(double x) { return -floorToInt(-x); }
+
 // Set up once per triangle, then asked for many boxes, in the coordinates of the setup.
 class TriangleBoxTest {
   public:

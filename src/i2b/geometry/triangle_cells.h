@@ -45,10 +45,6 @@ class TriangleCells {
         std::int32_t lowest, highest;             // of all
     };
 
-    static std::int32_t floorOf(double x) {
-        const auto i = static_cast<std::int32_t>(x);
-        return i - (static_cast<double>(i) > x ? 1 : 0);
-    }
     Range clipped(std::size_t axis, std::int32_t i) const;
     Line lineOf(std::size_t axis, std::int32_t i) const;
     Line columnsOf(std::int32_t u, std::int32_t lo, std::int32_t hi) const;
@@ -99,7 +95,7 @@ inline TriangleCells::Line TriangleCells::columnsOf(std::int32_t u, std::int32_t
     const Range c = clipped(u_, u);
     Range v{-line.w.lo, line.w.lo};
     if (c.lo > c.hi || !test_.across(w_, true, c.lo, c.hi, v.lo, v.hi) || !test_.place(v_, v.lo, v.hi)) return line;
-    const std::int32_t first = std::max(lo, floorOf(v.lo)), last = std::min(hi, floorOf(v.hi));
+    const std::int32_t first = std::max(lo, floorToInt(v.lo)), last = std::min(hi, floorToInt(v.hi));
     if (first > last) return line;
     line = lineOf(u_, u);
     if (line.w.lo > line.w.hi + 1) return line;
@@ -122,7 +118,7 @@ inline void TriangleCells::fill(Tile& tile, const Cell& lo, const Cell& hi) cons
             const double s = std::max({low, u.w.lo, v.w.lo, u.plane.lo + v.plane.lo});
             const double t = std::min({high, u.w.hi, v.w.hi, u.plane.hi + v.plane.hi});
             const bool some = s < high + 1 && t >= low;
-            const std::int32_t first = some ? floorOf(s) : 0, last = some ? floorOf(t) : -1;
+            const std::int32_t first = some ? floorToInt(s) : 0, last = some ? floorToInt(t) : -1;
             tile.first[i * 8 + k] = first;
             tile.last[i * 8 + k] = last;
             if (first > last) continue;

@@ -8,26 +8,34 @@ namespace {
 
 constexpr int blockBits = 6; // blocks of 64^3 cells, an eighth of a tree node of 128^3
 
-// A triangle in the coordinates of one level (cell edge 1), and the cells that its box spans there.
+// Places in the coordinates of one level: cell edge 1.
+struct LevelFrame {
+    LevelFrame(const Lattice& lattice, const LevelTriple& level) : origin(lattice.origin), size(lattice.cellSize(level)), cells(lattice.cells(level)) {}
+    Vec3 place(const Vec3& p) const {
+        const Vec3 d = p - origin;
+        return {d.x / size.x, d.y / size.y, d.z / size.z};
+    }
+    Vec3 origin, size;
+    Index3 cells;
+};
+
+// A triangle there, and the cells that its box spans.
 struct LevelTriangle {
-    LevelTriangle(const Surface& surface, std::size_t t, const Lattice& lattice, const LevelTriple& level) {
-        const Vec3 s = lattice.cellSize(level);
-        for (std::size_t i = 0; i < 3; ++i) {
-            const Vec3 d = surface.points[surface.triangles[t][i]] - lattice.origin;
-            corner[i] = {d.x / s.x, d.y / s.y, d.z / s.z};
-        }
-        const Index3 n = lattice.cells(level);
+    LevelTriangle(const Surface& surface, std::size_t t, const LevelFrame& frame) {
+        for (std::size_t i = 0; i < 3; ++i) corner[i] = frame.place(surface.points[surface.triangles[t][i]]);
         for (std::size_t i = 0; i < 3; ++i) {
             const int axis = static_cast<int>(i);
             const double a = std::min({corner[0][axis], corner[1][axis], corner[2][axis]});
             const double b = std::max({corner[0][axis], corner[1][axis], corner[2][axis]});
             const double pad = 1e-12 * (std::abs(a) + std::abs(b) + 1); // rounding of the division above
+            const double end = frame.cells[i];
             // Closed cells: a plane between two cells belongs to both.
-            lo[i] = static_cast<std::int32_t>(std::clamp(std::ceil(a - pad) - 1, -1.0, double(n[i])));
-            hi[i] = static_cast<std::int32_t>(std::clamp(std::floor(b + pad), -1.0, double(n[i])));
-            empty = empty || hi[i] < 0 || lo[i] >= n[i];
+            lo[i] = ceilToInt(std::clamp(a - pad, 0.0, end + 1)) - 1;
+            hi[i] = floorToInt(std::clamp(b + pad, -1.0, end));
+            empty = empty || hi[i] < 0 || lo[i] >= frame.cells[i];
             lo[i] = std::max(lo[i], 0);
-            hi[i] = std::min(hi[i], n[i] - 1);
+            hi[i] = std::min(hi[i], frame.cells[i] - 1);
+            inside = inside && a >= 0 && b <= end;
         }
     }
     TriangleBoxTest test() const { return {corner[0], corner[1], corner[2]}; }
@@ -35,18 +43,28 @@ struct LevelTriangle {
     std::array<Vec3, 3> corner;
     Index3 lo{}, hi{};
     bool empty = false;
+    bool inside = true; // the domain, all of it
 };
 
 // A triangle in a block of cells that it may meet. Ordered so that the blocks of a tree node stand together.
 struct BlockEntry {
-    Index3 block{};
-    std::uint32_t triangle = 0;
+    BlockEntry() = default;
+    BlockEntry(const Index3& block, std::uint32_t triangle)
+        : xy(std::uint64_t(block[0] >> 1) << 32 | std::uint64_t(block[1] >> 1)),
+          zbt(std::uint64_t(block[2] >> 1) << 35 | std::uint64_t((block[0] & 1) << 2 | (block[1] & 1) << 1 | (block[2] & 1)) << 32 | triangle) {}
 
-    Index3 node() const { return {block[0] >> 1, block[1] >> 1, block[2] >> 1}; }
-    friend bool operator<(const BlockEntry& a, const BlockEntry& b) {
-        const Index3 na = a.node(), nb = b.node();
-        return na != nb ? na < nb : a.block != b.block ? a.block < b.block : a.triangle < b.triangle;
+    Index3 node() const { return {std::int32_t(xy >> 32), std::int32_t(xy & 0xffffffffu), std::int32_t(zbt >> 35)}; }
+    Index3 block() const {
+        const Index3 n = node();
+        const auto i = static_cast<std::int32_t>(zbt >> 32 & 7);
+        return {2 * n[0] + (i >> 2), 2 * n[1] + (i >> 1 & 1), 2 * n[2] + (i & 1)};
     }
+    std::uint32_t triangle() const { return static_cast<std::uint32_t>(zbt); }
+    bool sameBlock(const BlockEntry& o) const { return xy == o.xy && zbt >> 32 == o.zbt >> 32; }
+    bool sameNode(const BlockEntry& o) const { return xy == o.xy && zbt >> 35 == o.zbt >> 35; }
+    friend bool operator<(const BlockEntry& a, const BlockEntry& b) { return a.xy != b.xy ? a.xy < b.xy : a.zbt < b.zbt; }
+
+    std::uint64_t xy = 0, zbt = 0; // node x, y; node z, block in the node, triangle
 };
 
 // Halves the range of blocks until it is one, dropping what the triangle does not meet; a large triangle so costs its
@@ -68,19 +86,18 @@ void visitBlocks(const TriangleBoxTest& test, const Index3& lo, const Index3& hi
 Index3 blockOf(const Index3& cell) { return {cell[0] >> blockBits, cell[1] >> blockBits, cell[2] >> blockBits}; }
 
 // Every triangle in every block that it meets, sorted.
-std::vector<BlockEntry> entriesOf(const Surface& surface, const std::vector<std::uint32_t>& triangles, const Lattice& lattice,
-                                  const LevelTriple& level) {
+std::vector<BlockEntry> entriesOf(const Surface& surface, const std::vector<std::uint32_t>& triangles, const LevelFrame& frame) {
     constexpr std::size_t chunk = 2048;
     std::vector<std::vector<BlockEntry>> parts((triangles.size() + chunk - 1) / chunk);
     parallelChunks(triangles.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
         for (std::size_t i = begin; i < end; ++i) {
-            const LevelTriangle triangle(surface, triangles[i], lattice, level);
+            const LevelTriangle triangle(surface, triangles[i], frame);
             if (triangle.empty) continue;
             const Index3 lo = blockOf(triangle.lo), hi = blockOf(triangle.hi);
             if (lo == hi) {
-                parts[c].push_back({lo, triangles[i]});
+                parts[c].emplace_back(lo, triangles[i]);
             } else {
-                visitBlocks(triangle.test(), lo, hi, [&](const Index3& block) { parts[c].push_back({block, triangles[i]}); });
+                visitBlocks(triangle.test(), lo, hi, [&](const Index3& block) { parts[c].emplace_back(block, triangles[i]); });
             }
         }
     });
@@ -94,14 +111,14 @@ std::vector<BlockEntry> entriesOf(const Surface& surface, const std::vector<std:
     return entries;
 }
 
-// Where runs of entries with the same key begin, plus one past the end.
-template <class Key>
-std::vector<std::size_t> runsOf(const std::vector<BlockEntry>& entries, const Key& key) {
+// Where runs of entries of begin .. end that are the same begin, plus the end.
+template <class Same>
+std::vector<std::size_t> runsOf(const std::vector<BlockEntry>& entries, std::size_t begin, std::size_t end, const Same& same) {
     std::vector<std::size_t> begins;
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-        if (i == 0 || key(entries[i]) != key(entries[i - 1])) begins.push_back(i);
+    for (std::size_t i = begin; i < end; ++i) {
+        if (i == begin || !same(entries[i], entries[i - 1])) begins.push_back(i);
     }
-    begins.push_back(entries.size());
+    begins.push_back(end);
     return begins;
 }
 
@@ -116,9 +133,11 @@ class BlockCells {
             lo[i] = std::max(lo[i], origin_[i]);
             hi[i] = std::min(hi[i], origin_[i] + (1 << blockBits) - 1);
         }
+        if (triangle.lo == triangle.hi && triangle.inside) return set(lo); // it lies in one cell
         const TriangleBoxTest test = triangle.test();
-        TriangleCells(test).visit(lo, hi, [&](const Index3& leaf, const LeafBits& b) {
-            LeafBits& mine = leaves_[static_cast<std::size_t>(bits::offset(leaf[0] >> 3, leaf[1] >> 3, leaf[2] >> 3))];
+        if ((hi[0] - lo[0] + 1) * (hi[1] - lo[1] + 1) * (hi[2] - lo[2] + 1) <= 8) return addFew(test, lo, hi);
+        TriangleCells(test).visit(lo, hi, [&](const Index3& at, const LeafBits& b) {
+            LeafBits& mine = leaf(at);
             for (std::size_t n = 0; n < 8; ++n) mine[n] |= b[n];
         });
     }
@@ -130,27 +149,37 @@ class BlockCells {
     }
 
   private:
+    LeafBits& leaf(const Index3& c) { return leaves_[static_cast<std::size_t>(bits::offset(c[0] >> 3, c[1] >> 3, c[2] >> 3))]; }
+    void set(const Index3& c) { leaf(c)[static_cast<std::size_t>(c[0] & 7)] |= std::uint64_t(1) << (bits::offset(0, c[1], c[2])); }
+    // One by one: sooner done than columns are set up.
+    void addFew(const TriangleBoxTest& test, const Index3& lo, const Index3& hi) {
+        for (std::int32_t x = lo[0]; x <= hi[0]; ++x) {
+            for (std::int32_t y = lo[1]; y <= hi[1]; ++y) {
+                for (std::int32_t z = lo[2]; z <= hi[2]; ++z) {
+                    const Vec3 low{double(x), double(y), double(z)};
+                    if (test.meets(low, low + Vec3{1, 1, 1})) set({x, y, z});
+                }
+            }
+        }
+    }
+
     Index3 origin_;
     std::vector<LeafBits> leaves_ = std::vector<LeafBits>(512);
 };
 
 // The cells of a level that any of the triangles meets. Blocks are filled and nodes are put together in parallel.
 Mask::Ptr cellsMet(const Surface& surface, const std::vector<std::uint32_t>& triangles, const Lattice& lattice, const LevelTriple& level) {
-    const std::vector<BlockEntry> entries = entriesOf(surface, triangles, lattice, level);
-    const std::vector<std::size_t> nodes = runsOf(entries, [](const BlockEntry& e) { return e.node(); });
+    const LevelFrame frame(lattice, level);
+    const std::vector<BlockEntry> entries = entriesOf(surface, triangles, frame);
+    const std::vector<std::size_t> nodes = runsOf(entries, 0, entries.size(), [](const BlockEntry& a, const BlockEntry& b) { return a.sameNode(b); });
     return treeOfNodes(nodes.size() - 1, [&](std::size_t k) {
-        const std::size_t begin = nodes[k], end = nodes[k + 1];
-        const Index3 at = entries[begin].node();
-        std::vector<std::size_t> blocks;
-        for (std::size_t i = begin; i < end; ++i) {
-            if (i == begin || entries[i].block != entries[i - 1].block) blocks.push_back(i);
-        }
-        blocks.push_back(end);
+        const std::vector<std::size_t> blocks = runsOf(entries, nodes[k], nodes[k + 1], [](const BlockEntry& a, const BlockEntry& b) { return a.sameBlock(b); });
         std::vector<std::unique_ptr<BlockCells>> cells(blocks.size() - 1);
         parallelFor(cells.size(), [&](std::size_t b) {
-            cells[b] = std::make_unique<BlockCells>(entries[blocks[b]].block);
-            for (std::size_t i = blocks[b]; i < blocks[b + 1]; ++i) cells[b]->add(LevelTriangle(surface, entries[i].triangle, lattice, level));
+            cells[b] = std::make_unique<BlockCells>(entries[blocks[b]].block());
+            for (std::size_t i = blocks[b]; i < blocks[b + 1]; ++i) cells[b]->add(LevelTriangle(surface, entries[i].triangle(), frame));
         }, 1);
+        const Index3 at = entries[nodes[k]].node();
         NodeBuilder node(openvdb::Coord(at[0] * nodeEdge, at[1] * nodeEdge, at[2] * nodeEdge));
         for (const auto& block : cells) block->addTo(node);
         return node.take();
@@ -170,11 +199,12 @@ std::vector<std::vector<std::uint32_t>> trianglesByTarget(const Surface& surface
 // Those that meet any cell of the mask.
 std::vector<std::uint32_t> trianglesIn(const Mask& cells, const Surface& surface, const std::vector<std::uint32_t>& triangles,
                                        const Lattice& lattice, const LevelTriple& level) {
+    const LevelFrame frame(lattice, level);
     std::vector<std::uint8_t> inside(triangles.size());
     parallelChunks(triangles.size(), 512, [&](std::size_t begin, std::size_t end, std::size_t) {
         MaskReader reader(cells);
         for (std::size_t i = begin; i < end; ++i) {
-            const LevelTriangle triangle(surface, triangles[i], lattice, level);
+            const LevelTriangle triangle(surface, triangles[i], frame);
             if (triangle.empty) continue;
             const TriangleBoxTest test = triangle.test();
             TriangleCells(test).visit(triangle.lo, triangle.hi, [&](const Index3& leaf, const LeafBits& b) {
