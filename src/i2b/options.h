@@ -28,12 +28,54 @@ struct BoxSize {
     Vec3 size;                           // m, largest cell inside, along each axis
 };
 
+struct SphereSize {
+    Vec3 centre;                         // m
+    double radius = 0;                   // m
+    Vec3 size;                           // m, largest cell inside, along each axis
+};
+
+struct CylinderSize {
+    Vec3 from, to;                       // m, centres of its flat ends
+    double radius = 0;                   // m
+    Vec3 size;                           // m, largest cell inside, along each axis
+};
+
+struct BandSize {
+    std::string part;                    // name or regular expression (whole name)
+    double distance = 0;                 // m, to both sides of the part
+    Vec3 size;                           // m, largest cell that near, along each axis
+};
+
+struct PointSize {
+    Vec3 place;                          // m
+    Vec3 size;                           // m, largest cell that holds it, along each axis
+};
+
+struct SegmentSize {
+    Vec3 from, to;                       // m
+    Vec3 size;                           // m, largest cell that it meets, along each axis
+};
+
+struct LineSize {
+    Vec3 through;                        // m
+    Vec3 direction;                      // of any length; the line has no ends
+    Vec3 size;                           // m, largest cell that it meets, along each axis
+};
+
 struct SizeOptions {
     double surface = 0;                  // m, d_int: the largest cell that meets the geometry; the only one required
     double max = 0;                      // m, d_max: the largest cell anywhere; 0: from the extent
     double min = 0;                      // m, d_min: the smallest; 0: surface / 2
     std::vector<PartSize> parts;
     std::vector<BoxSize> boxes;
+    std::vector<SphereSize> spheres;
+    std::vector<CylinderSize> cylinders;
+    std::vector<BandSize> bands;
+    std::vector<PointSize> points;
+    std::vector<SegmentSize> segments;
+    std::vector<LineSize> lines;
+    double curvature = 0;                // cells per 360 degrees along a curved wall; 0: off
+    int gapCells = 0;                    // cells between opposite walls, down to the smallest cell; 0: off
     int bufferCells = 3;                 // cells of each level between the next finer and the next coarser
 };
 

@@ -138,8 +138,6 @@ TEST(CaseFile, NamesFileLineAndKey) {
     EXPECT_THAT(complaint("external = true\ninternal = true"),
                 AllOf(HasSubstr("exclude"), HasSubstr("car.toml:")));
     EXPECT_THAT(complaint("size = 1\nsize = 2"), HasSubstr("car.toml:2"));
-    EXPECT_THAT(complaint("[size]\nsurface = 1"),
-                AllOf(HasSubstr("car.toml:1, key size"), HasSubstr("table")));
     EXPECT_THAT(complaint("size = \n"), HasSubstr("car.toml:1"));
 }
 

@@ -51,10 +51,6 @@ TEST(Validate, NamesEachBrokenOption) {
          [](Options& o) {
              o.size.parts = {{"wheel(", sameSize(0.01)}};
          }},
-        {"part-size",
-         [](Options& o) {
-             o.size.min = 0.005, o.size.parts = {{"wheel", sameSize(0.001)}};
-         }},
         {"box-size",
          [](Options& o) {
              o.size.boxes = {{{{0, 0, 0}, {1, 1, 0}}, sameSize(0.1)}};

@@ -1,6 +1,7 @@
 // Proves: one number gives a lattice whose cells are small enough everywhere they must be; parts, boxes and
 // limits act as asked; requests without a lattice are refused with a remedy.
 #include "i2b/core/error.h"
+#include "i2b/sizing/estimate.h"
 #include "i2b/sizing/size_field.h"
 #include <gmock/gmock.h>
 
@@ -98,7 +99,8 @@ TEST(SizeField, LimitsClampAndSaySo) {
     ASSERT_EQ(f.boxes.size(), 1u);
     EXPECT_EQ(f.boxes[0].level, allAxes(2));
     EXPECT_DOUBLE_EQ(f.minSize, 0.2);
-    EXPECT_THAT(f.notes, testing::ElementsAre(testing::HasSubstr("clamped to 0.2")));
+    EXPECT_THAT(f.notes, testing::ElementsAre(testing::HasSubstr("0.01 m of part 'body' is clamped to 0.2 m"),
+                                              testing::HasSubstr("clamped to 0.2 m")));
 }
 
 TEST(SizeField, RefusesWhatHasNoLattice) {

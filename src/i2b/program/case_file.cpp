@@ -1,5 +1,6 @@
 #include "i2b/program/case_file.h"
 #include "i2b/core/error.h"
+#include "i2b/program/entries.h"
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
@@ -89,18 +90,25 @@ void read(const Value& v, std::vector<std::string>& field) {
     if (v.node.is_string()) return field.push_back(v.text(v.node));
     for (const toml::node& item : v.list()) field.push_back(v.text(item));
 }
-void read(const Value& v, std::vector<PartSize>& field) {
-    field.clear();
-    for (const toml::node& item : v.list()) {
-        const auto entries = v.entries(item, {"part", "size"});
-        field.push_back({v.text(*entries[0]), v.size(*entries[1])});
-    }
+void readEntry(const Value& v, const toml::node& at, std::string& entry, bool) { entry = v.text(at); }
+void readEntry(const Value& v, const toml::node& at, double& entry, bool) { entry = v.number(at); }
+void readEntry(const Value& v, const toml::node& at, Box& entry, bool) { entry = v.box(at); }
+void readEntry(const Value& v, const toml::node& at, Vec3& entry, bool size) {
+    entry = size ? v.size(at) : v.point(at);
 }
-void read(const Value& v, std::vector<BoxSize>& field) {
+template <class T>
+    requires HasEntries<std::vector<T>>::value
+void read(const Value& v, std::vector<T>& field) {
     field.clear();
     for (const toml::node& item : v.list()) {
-        const auto entries = v.entries(item, {"box", "size"});
-        field.push_back({v.box(*entries[0]), v.size(*entries[1])});
+        T& target = field.emplace_back();
+        std::apply(
+            [&](const auto&... entry) {
+                const auto nodes = v.entries(item, {entry.name...});
+                std::size_t i = 0;
+                (readEntry(v, *nodes[i++], target.*(entry.member), entry.size), ...);
+            },
+            entriesOf(target));
     }
 }
 void read(const Value& v, std::vector<Seed>& field) {
@@ -157,11 +165,22 @@ std::string show(const Box& b) {
     return fmt::format("[{}, {}, {}, {}, {}, {}]", b.lo.x, b.lo.y, b.lo.z, b.hi.x, b.hi.y, b.hi.z);
 }
 std::string showSize(const Vec3& s) { return s == sameSize(s.x) ? show(s.x) : show(s); }
-std::string show(const PartSize& p) {
-    return fmt::format("{{ part = {}, size = {} }}", quoted(p.part), showSize(p.size));
+template <class T, class V>
+std::string showEntry(const T& item, const Entry<T, V>& entry) {
+    if constexpr (std::is_same_v<V, Vec3>) {
+        if (entry.size) return fmt::format("{} = {}", entry.name, showSize(item.*(entry.member)));
+    }
+    return fmt::format("{} = {}", entry.name, show(item.*(entry.member)));
 }
-std::string show(const BoxSize& b) {
-    return fmt::format("{{ box = {}, size = {} }}", show(b.box), showSize(b.size));
+template <class T>
+    requires HasEntries<std::vector<T>>::value
+std::string show(const T& item) {
+    return std::apply(
+        [&](const auto&... entry) {
+            const std::vector<std::string> texts{showEntry(item, entry)...};
+            return fmt::format("{{ {} }}", fmt::join(texts, ", "));
+        },
+        entriesOf(item));
 }
 std::string show(const Seed& s) {
     return fmt::format("{{ name = {}, place = {} }}", quoted(s.name), show(s.place));
@@ -192,6 +211,33 @@ std::string assignment(const Setting& setting, Case& given) {
         setting.field);
 }
 
+[[noreturn]] void refuseKey(const toml::key& at, std::string_view name, const std::string& path,
+                            std::string_view near) {
+    throw Error(ErrorKind::usage, fmt::format("unknown key '{}'", name),
+                fmt::format("{}:{}, key {}", path, at.source().begin.line, name),
+                near.empty() ? "i2b mesh --write-case prints all keys" : fmt::format("write {}", near));
+}
+
+// [size] and [[size.box]] and the like: the same settings under shorter names.
+void readSizeTable(const toml::table& sizes, const std::string& path, Case& result) {
+    for (const auto& [key, node] : sizes) {
+        const Setting* const setting = findInSize(key.str());
+        const std::string name = fmt::format("size.{}", key.str());
+        if (!setting && findSetting(key.str()))
+            throw Error(ErrorKind::usage, fmt::format("the key '{}' has no place in the table [size]", key.str()),
+                        fmt::format("{}:{}, key {}", path, key.source().begin.line, name),
+                        "write it before the first table");
+        if (!setting) refuseKey(key, name, path, nearestInSize(key.str()));
+        const auto before = result.lines.find(std::string(setting->key));
+        if (before != result.lines.end())
+            throw Error(ErrorKind::usage, fmt::format("{} and {} are the same", setting->key, name),
+                        fmt::format("{}:{}, key {}", path, key.source().begin.line, name),
+                        fmt::format("give one of the two ({} is in line {})", setting->key, before->second));
+        readInto({node, name, path}, *setting, result);
+        result.lines[std::string(setting->key)] = static_cast<int>(key.source().begin.line);
+    }
+}
+
 } // namespace
 
 Case parseCase(std::string_view text, const std::string& path) {
@@ -205,18 +251,13 @@ Case parseCase(std::string_view text, const std::string& path) {
     Case result;
     result.file = path;
     for (const auto& [key, node] : table) {
+        if (key.str() == "size" && node.is_table()) continue;
         const Setting* const setting = findSetting(key.str());
-        const int line = static_cast<int>(key.source().begin.line);
-        if (!setting) {
-            const std::string_view near = nearestKey(key.str());
-            throw Error(ErrorKind::usage, fmt::format("unknown key '{}'", key.str()),
-                        fmt::format("{}:{}, key {}", path, line, key.str()),
-                        near.empty() ? "i2b mesh --write-case prints all keys"
-                                     : fmt::format("write {}", near));
-        }
+        if (!setting) refuseKey(key, key.str(), path, nearestKey(key.str()));
         readInto({node, setting->key, path}, *setting, result);
-        result.lines[std::string(setting->key)] = line;
+        result.lines[std::string(setting->key)] = static_cast<int>(key.source().begin.line);
     }
+    if (const toml::table* const sizes = table["size"].as_table()) readSizeTable(*sizes, path, result);
     resolveFiles(result.options.geometry.files, path);
     return result;
 }

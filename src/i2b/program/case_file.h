@@ -4,7 +4,17 @@
 //   size = 0.01
 //   seed = [{ name = "air", place = [0, 0, 2] }]    # or [0, 0, 2], or [[0, 0, 2], [1, 0, 2]]
 //   part-size = [{ part = "wheel.*", size = 0.005 }]
-//   box-size = [{ box = [0, -1, 0, 4, 1, 1], size = 0.02 }]
+//   box-size = [{ box = [0, -1, 0, 4, 1, 1], size = [0.02, 0.02, 0.01] }]   # one size, or one for each axis
+//
+// All sizes may stand in a table of their own instead, where surface is the size on the geometry:
+//
+//   [size]
+//   surface = 0.01
+//   buffer-cells = 4
+//   [[size.band]]
+//   part = "wheel.*"
+//   distance = 0.1
+//   size = 0.005
 #pragma once
 #include "i2b/program/settings.h"
 #include <string>

@@ -1,12 +1,10 @@
 #include "i2b/program/command_line.h"
 #include "i2b/core/error.h"
 #include "i2b/program/case_file.h"
-#include <charconv>
+#include "i2b/program/edits.h"
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <functional>
-#include <map>
 
 namespace i2b {
 namespace {
@@ -15,103 +13,7 @@ namespace {
     throw Error(ErrorKind::usage, what, option, remedy);
 }
 
-bool isNumber(std::string_view text) {
-    if (text.starts_with('+')) text.remove_prefix(1);
-    double value = 0;
-    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return fault == std::errc() && end == text.data() + text.size();
-}
-
-double toNumber(const std::string& option, const std::string& text) {
-    if (!isNumber(text)) refuse(option, fmt::format("'{}' is no number", text), "give a number");
-    return std::stod(text);
-}
-
-std::vector<double> toNumbers(const std::string& option, const std::string& text, std::size_t count) {
-    std::vector<double> numbers;
-    for (const std::string& item : CLI::detail::split(text, ',')) numbers.push_back(toNumber(option, item));
-    if (numbers.size() != count)
-        refuse(option, fmt::format("{} numbers where {} are needed", numbers.size(), count),
-               fmt::format("give {} numbers", count));
-    return numbers;
-}
-
-Box toBox(const std::vector<double>& v) { return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}}; }
-
-// "--seed 0 -1 .5" becomes "--seed=0,-1,.5", and "--size -1" "--size=-1": no number is then taken for an
-// option or a file, and --seed may take one text or three numbers without swallowing the geometry behind it.
-std::vector<std::string> joinNumbers(const std::vector<std::string>& arguments) {
-    const std::map<std::string, std::size_t, std::less<>> counts{
-        {"--seed", 3}, {"--box", 6}, {"--box-size", 7}};
-    std::vector<std::string> joined;
-    for (std::size_t i = 0; i < arguments.size(); ++i) {
-        joined.push_back(arguments[i]);
-        if (!arguments[i].starts_with("--") || arguments[i].find('=') != std::string::npos) continue;
-        const auto wanted = counts.find(arguments[i]);
-        const std::size_t most = wanted == counts.end() ? 1 : wanted->second;
-        std::vector<std::string> numbers;
-        while (numbers.size() < most && i + 1 < arguments.size() && isNumber(arguments[i + 1]))
-            numbers.push_back(arguments[++i]);
-        if (!numbers.empty()) joined.back() += fmt::format("={}", fmt::join(numbers, ","));
-    }
-    return joined;
-}
-
-using Edit = std::function<void(Case&)>;
 using Edits = std::vector<std::pair<std::string, Edit>>; // key, what it does to the case
-
-// The text after an option to the change it stands for; complains at once, applied after the case file is
-// read.
-Edit toEdit(const Setting& setting, const std::string& text) {
-    const std::string option = fmt::format("--{}", setting.key);
-    const auto assign = [](auto field, auto value) { return [=](Case& c) { field(c) = value; }; };
-    struct Visitor {
-        const std::string &option, &text;
-        const decltype(assign)& set;
-        Edit operator()(FieldOf<double> f) const { return set(f, toNumber(option, text)); }
-        Edit operator()(FieldOf<int> f) const {
-            int value = 0;
-            const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-            if (fault != std::errc() || end != text.data() + text.size())
-                refuse(option, fmt::format("'{}' is no whole number", text), "give a whole number");
-            return set(f, value);
-        }
-        Edit operator()(FieldOf<bool> f) const { return set(f, text != "false"); }
-        Edit operator()(FieldOf<std::string> f) const { return set(f, text); }
-        Edit operator()(FieldOf<std::vector<std::string>> f) const {
-            return set(f, CLI::detail::split(text, ','));
-        }
-        Edit operator()(FieldOf<std::optional<Box>> f) const {
-            return set(f, std::optional<Box>(toBox(toNumbers(option, text, 6))));
-        }
-        Edit operator()(FieldOf<std::vector<PartSize>> f) const {
-            const std::size_t equals = text.rfind('=');
-            if (equals == std::string::npos) refuse(option, "a size is missing", "write PART=D");
-            const PartSize value{text.substr(0, equals), sameSize(toNumber(option, text.substr(equals + 1)))};
-            return [=](Case& c) { f(c).push_back(value); };
-        }
-        Edit operator()(FieldOf<std::vector<BoxSize>> f) const {
-            const auto v = toNumbers(option, text, 7);
-            return [=](Case& c) { f(c).push_back({toBox(v), sameSize(v[6])}); };
-        }
-        Edit operator()(FieldOf<std::vector<Seed>> f) const {
-            const std::size_t equals = text.find('=');
-            const auto v = toNumbers(option, equals == std::string::npos ? text : text.substr(equals + 1), 3);
-            const Seed value{equals == std::string::npos ? "" : text.substr(0, equals), {v[0], v[1], v[2]}};
-            return [=](Case& c) { f(c).push_back(value); };
-        }
-        Edit operator()(FlowChoice choice) const {
-            return [=, on = text != "false"](Case& c) {
-                Flow& flow = c.options.domain.flow;
-                if (on)
-                    flow = choice.value;
-                else if (flow == choice.value)
-                    flow = Flow::automatic;
-            };
-        }
-    };
-    return std::visit(Visitor{option, text, assign}, setting.field);
-}
 
 // The default as the help shows it; nothing where it says nothing.
 std::string defaultOf(const Setting& setting) {
@@ -124,6 +26,26 @@ std::string defaultOf(const Setting& setting) {
     if (const auto* const f = std::get_if<FieldOf<std::vector<std::string>>>(&setting.field))
         return fmt::format("{}", fmt::join((*f)(fresh), ","));
     return "";
+}
+
+template <class T>
+struct IsItemList : std::false_type {};
+template <class T>
+struct IsItemList<FieldOf<std::vector<T>>> : std::bool_constant<!std::is_same_v<T, std::string>> {};
+
+// Lists that a repeated option adds to.
+bool isRepeatable(const Setting& setting) {
+    return std::visit([](const auto& field) { return IsItemList<std::decay_t<decltype(field)>>::value; },
+                      setting.field);
+}
+
+// Forgets what the case file gave for a list.
+void clearList(const Setting& setting, Case& given) {
+    std::visit(
+        [&](const auto& field) {
+            if constexpr (IsItemList<std::decay_t<decltype(field)>>::value) field(given).clear();
+        },
+        setting.field);
 }
 
 void addSetting(CLI::App& app, const Setting& setting, Edits& edits) {
@@ -146,13 +68,8 @@ void addSetting(CLI::App& app, const Setting& setting, Edits& edits) {
         std::string(setting.help) +
             (fallback.empty() || setting.key == "size" ? "" : fmt::format(" [{}]", fallback)));
     option->type_name(std::string(setting.value))->expected(1)->allow_extra_args(false);
-    if (!setting.field.valueless_by_exception() &&
-        (std::holds_alternative<FieldOf<std::vector<Seed>>>(setting.field) ||
-         std::holds_alternative<FieldOf<std::vector<PartSize>>>(setting.field) ||
-         std::holds_alternative<FieldOf<std::vector<BoxSize>>>(setting.field)))
-        option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    else
-        option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+    option->multi_option_policy(isRepeatable(setting) ? CLI::MultiOptionPolicy::TakeAll
+                                                      : CLI::MultiOptionPolicy::TakeLast);
 }
 
 struct Parser {
@@ -227,11 +144,7 @@ struct Parser {
             line.given.options.geometry.files = files;
         // A list given on the command line replaces the case file's.
         for (const auto& [key, edit] : edits) {
-            if (line.given.lines.erase(key) == 0) continue;
-            SizeOptions& size = line.given.options.size;
-            if (key == "seed") line.given.options.domain.seeds.clear();
-            if (key == "part-size") size.parts.clear();
-            if (key == "box-size") size.boxes.clear();
+            if (line.given.lines.erase(key) > 0) clearList(*findSetting(key), line.given);
         }
         // So does a choice of flow: a seed asked for here is not refused because the file says external.
         for (const auto& [key, edit] : edits) {

@@ -12,6 +12,7 @@
 #include "i2b/layers/layer_stack.h"
 #include "i2b/paint/paint.h"
 #include "i2b/quality/repair.h"
+#include "i2b/sizing/estimate.h"
 #include <fmt/format.h>
 
 namespace i2b {

@@ -43,19 +43,53 @@ void checkGeometry(const GeometryOptions& geometry, Checker& check) {
 bool isSize(const Vec3& size) { return isFinite(size) && size.x > 0 && size.y > 0 && size.z > 0; }
 double smallest(const Vec3& size) { return std::min(size.x, std::min(size.y, size.z)); }
 
-void checkPartSize(const PartSize& part, const SizeOptions& size, Checker& check) {
-    if (!isSize(part.size))
-        check.add("part-size", fmt::format("the size of part '{}' is {} m", part.part, smallest(part.size)),
-                  "give a positive length in metres");
-    else if (smallest(part.size) < size.min)
-        check.add("part-size",
-                  fmt::format("the size of part '{}', {} m, is below min-size", part.part, smallest(part.size)),
-                  fmt::format("give at least {} m or lower min-size", size.min));
-    try {
-        std::regex(part.part, std::regex::ECMAScript);
-    } catch (const std::regex_error&) {
-        check.add("part-size", fmt::format("'{}' is no regular expression", part.part),
-                  "write the part's whole name, or an expression such as wheel.*");
+// The size and the name of the part that an entry of any list has, if it has them.
+template <class T>
+void checkItem(const char* key, const T& item, Checker& check) {
+    if (!isSize(item.size))
+        check.add(key, fmt::format("the size is {} m", smallest(item.size)), "give a positive length in metres");
+    if constexpr (requires { item.part; }) {
+        try {
+            std::regex(item.part, std::regex::ECMAScript);
+        } catch (const std::regex_error&) {
+            check.add(key, fmt::format("'{}' is no regular expression", item.part),
+                      "write the part's whole name, or an expression such as wheel.*");
+        }
+    }
+    if constexpr (requires { item.radius; })
+        if (!(item.radius > 0 && std::isfinite(item.radius)))
+            check.add(key, fmt::format("the radius is {} m", item.radius), "give a positive length in metres");
+    if constexpr (requires { item.from; })
+        if (!isFinite(item.from) || !isFinite(item.to) || item.from == item.to)
+            check.add(key, "the two ends are no segment", "give two different places");
+}
+
+void checkPlaces(const SizeOptions& size, Checker& check) {
+    for (const PartSize& part : size.parts) checkItem("part-size", part, check);
+    for (const BoxSize& box : size.boxes) {
+        checkItem("box-size", box, check);
+        if (!hasVolume(box.box)) check.add("box-size", "the box has no volume", "give the lower corner first");
+    }
+    for (const SphereSize& sphere : size.spheres) {
+        checkItem("sphere-size", sphere, check);
+        if (!isFinite(sphere.centre)) check.add("sphere-size", "the centre is not finite", "give metres");
+    }
+    for (const CylinderSize& cylinder : size.cylinders) checkItem("cylinder-size", cylinder, check);
+    for (const BandSize& band : size.bands) {
+        checkItem("band-size", band, check);
+        if (!(band.distance > 0 && std::isfinite(band.distance)))
+            check.add("band-size", fmt::format("the distance is {} m", band.distance),
+                      "give a positive length in metres");
+    }
+    for (const PointSize& point : size.points) {
+        checkItem("point-size", point, check);
+        if (!isFinite(point.place)) check.add("point-size", "the place is not finite", "give metres");
+    }
+    for (const SegmentSize& segment : size.segments) checkItem("segment-size", segment, check);
+    for (const LineSize& line : size.lines) {
+        checkItem("line-size", line, check);
+        if (!isFinite(line.through) || !isFinite(line.direction) || !(norm(line.direction) > 0))
+            check.add("line-size", "the direction has no length", "give a place and a direction");
     }
 }
 
@@ -74,14 +108,9 @@ void checkSizes(const SizeOptions& size, Checker& check) {
     if (size.min > size.surface && size.surface > 0)
         check.add("min-size", fmt::format("min-size, {} m, is above size, {} m", size.min, size.surface),
                   "give at most size, or 0: half of size");
-    for (const PartSize& part : size.parts) checkPartSize(part, size, check);
-    for (const BoxSize& box : size.boxes) {
-        if (!hasVolume(box.box))
-            check.add("box-size", "the box has no volume", "give the lower corner first");
-        if (!isSize(box.size))
-            check.add("box-size", fmt::format("the size inside is {} m", smallest(box.size)),
-                      "give a positive length in metres");
-    }
+    checkPlaces(size, check);
+    check.within("curvature", size.curvature, 0, 10000);
+    check.within("gap-cells", size.gapCells, 0, 100);
     check.within("buffer-cells", size.bufferCells, 1, 64);
 }
 

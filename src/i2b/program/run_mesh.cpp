@@ -24,9 +24,10 @@ void completeReport(RunReport& report, const Run& run, Clock::time_point start) 
     report.seconds = std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void printNotes(const GeometryNotes& notes, const Run& run) {
+void printNotes(const GridResult& result, const Run& run) {
     if (run.quiet) return;
-    for (const std::string& message : notes.messages) fmt::print(run.out, "note: {}\n", message);
+    for (const auto* const notes : {&result.notes.messages, &result.field.notes})
+        for (const std::string& message : *notes) fmt::print(run.out, "note: {}\n", message);
 }
 
 void printEnd(const RunReport& report, const OutputOptions& output, const Run& run) {
@@ -42,7 +43,7 @@ int runMesh(const CommandLine& line, Run& run) {
     const Options& options = line.given.options;
     checkWritable(options.output.folder);
     MeshResult result = generate(options, run.context);
-    printNotes(result.cartesian->notes, run);
+    printNotes(*result.cartesian, run);
     writeMeshResults(result, options, run.context,
                      [&](RunReport& report) { completeReport(report, run, start); });
     printEnd(result.report, options.output, run);
@@ -54,7 +55,7 @@ int runGrid(const CommandLine& line, Run& run) {
     const Options& options = line.given.options;
     checkWritable(options.output.folder);
     const auto result = generateGrid(options, run.context);
-    printNotes(result->notes, run);
+    printNotes(*result, run);
     RunReport report = reportOf(*result, options, run.context);
     writeGridResults(*result, report, options, run.context,
                      [&](RunReport& r) { completeReport(r, run, start); });
@@ -67,7 +68,7 @@ int runGrid(const CommandLine& line, Run& run) {
 
 int runRegions(const CommandLine& line, Run& run) {
     const auto result = generateGrid(line.given.options, run.context, false);
-    printNotes(result->notes, run);
+    printNotes(*result, run);
     const RunReport report = reportOf(*result, line.given.options, run.context);
     fmt::print(run.out, "{}", regionsText(result->regions, report.parts));
     return 0;

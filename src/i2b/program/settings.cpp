@@ -16,17 +16,33 @@ const std::array table{
     Setting{"scale", "S", "Metres per unit of the geometry files; every other length is in metres after it",
             I2B_FIELD(double, options.geometry.scale)},
     Setting{"size", "D", "Largest cell that meets the geometry, m; the only length ever required",
-            I2B_FIELD(double, options.size.surface)},
+            I2B_FIELD(double, options.size.surface), "surface"},
     Setting{"max-size", "D", "Largest cell anywhere, m; 0: from the extent of the domain",
-            I2B_FIELD(double, options.size.max)},
+            I2B_FIELD(double, options.size.max), "max"},
     Setting{"min-size", "D", "Smallest cell, and the size of holes that are closed, m; 0: half of size",
-            I2B_FIELD(double, options.size.min)},
+            I2B_FIELD(double, options.size.min), "min"},
     Setting{"part-size", "PART=D", "Largest cell that meets a part (whole name or regular expression), m",
-            I2B_FIELD(std::vector<PartSize>, options.size.parts)},
+            I2B_FIELD(std::vector<PartSize>, options.size.parts), "part"},
     Setting{"box-size", "X0 Y0 Z0 X1 Y1 Z1 D", "Largest cell inside a box, m",
-            I2B_FIELD(std::vector<BoxSize>, options.size.boxes)},
+            I2B_FIELD(std::vector<BoxSize>, options.size.boxes), "box"},
+    Setting{"sphere-size", "X Y Z R D", "Largest cell inside a sphere, m",
+            I2B_FIELD(std::vector<SphereSize>, options.size.spheres), "sphere"},
+    Setting{"cylinder-size", "X0 Y0 Z0 X1 Y1 Z1 R D", "Largest cell inside a cylinder with flat ends, m",
+            I2B_FIELD(std::vector<CylinderSize>, options.size.cylinders), "cylinder"},
+    Setting{"band-size", "PART DISTANCE D", "Largest cell within a distance of a part, m",
+            I2B_FIELD(std::vector<BandSize>, options.size.bands), "band"},
+    Setting{"point-size", "X Y Z D", "Largest cell that holds a point, m",
+            I2B_FIELD(std::vector<PointSize>, options.size.points), "point"},
+    Setting{"segment-size", "X0 Y0 Z0 X1 Y1 Z1 D", "Largest cell that a line segment meets, m",
+            I2B_FIELD(std::vector<SegmentSize>, options.size.segments), "segment"},
+    Setting{"line-size", "X Y Z DX DY DZ D", "Largest cell that an endless line through X Y Z meets, m",
+            I2B_FIELD(std::vector<LineSize>, options.size.lines), "line"},
+    Setting{"curvature", "N", "Cells per 360 degrees along curved walls, down to min-size; 0: off",
+            I2B_FIELD(double, options.size.curvature), "curvature"},
+    Setting{"gap-cells", "N", "Cells between opposite walls, down to min-size; 0: off",
+            I2B_FIELD(int, options.size.gapCells), "gap-cells"},
     Setting{"buffer-cells", "N", "Cells of each size between the next finer and the next coarser",
-            I2B_FIELD(int, options.size.bufferCells)},
+            I2B_FIELD(int, options.size.bufferCells), "buffer-cells"},
     Setting{"box", "X0 Y0 Z0 X1 Y1 Z1", "The domain, m; without it, a box from the extent of the geometry",
             I2B_FIELD(std::optional<Box>, options.domain.box)},
     Setting{"external", "", "Mesh what lies around the geometry, up to the box; the default without seeds",
@@ -81,11 +97,23 @@ const Setting* findSetting(std::string_view key) {
     return found == table.end() ? nullptr : found;
 }
 
-std::string_view nearestKey(std::string_view key) {
-    const auto* const best =
-        std::ranges::min_element(table, {}, [&](const Setting& s) { return editDistance(s.key, key); });
-    return editDistance(best->key, key) <= std::max<std::size_t>(2, key.size() / 3) ? best->key
-                                                                                    : std::string_view{};
+const Setting* findInSize(std::string_view key) {
+    const auto* const found = std::ranges::find(table, key, &Setting::inSize);
+    return key.empty() || found == table.end() ? nullptr : found;
 }
+
+namespace {
+
+std::string_view nearest(std::string_view key, std::string_view Setting::*name) {
+    const Setting* const best = &*std::ranges::min_element(
+        table, {}, [&](const Setting& s) { return (s.*name).empty() ? key.size() + 99 : editDistance(s.*name, key); });
+    const std::string_view found = best->*name;
+    return editDistance(found, key) <= std::max<std::size_t>(2, key.size() / 3) ? found : std::string_view{};
+}
+
+} // namespace
+
+std::string_view nearestKey(std::string_view key) { return nearest(key, &Setting::key); }
+std::string_view nearestInSize(std::string_view key) { return nearest(key, &Setting::inSize); }
 
 } // namespace i2b

@@ -29,7 +29,10 @@ struct FlowChoice {
 
 using Field = std::variant<FieldOf<double>, FieldOf<int>, FieldOf<bool>, FieldOf<std::string>,
                            FieldOf<std::vector<std::string>>, FieldOf<std::vector<PartSize>>,
-                           FieldOf<std::vector<BoxSize>>, FieldOf<std::vector<Seed>>,
+                           FieldOf<std::vector<BoxSize>>, FieldOf<std::vector<SphereSize>>,
+                           FieldOf<std::vector<CylinderSize>>, FieldOf<std::vector<BandSize>>,
+                           FieldOf<std::vector<PointSize>>, FieldOf<std::vector<SegmentSize>>,
+                           FieldOf<std::vector<LineSize>>, FieldOf<std::vector<Seed>>,
                            FieldOf<std::optional<Box>>, FlowChoice>;
 
 struct Setting {
@@ -37,12 +40,15 @@ struct Setting {
     std::string_view value; // what follows the option on the command line; empty for a switch
     std::string_view help;  // with the unit
     Field field;
+    std::string_view inSize = {}; // what it is called in a case file's table [size]; empty: it has no place there
 };
 
 // In the order of the case file.
 std::span<const Setting> settings();
 const Setting* findSetting(std::string_view key);
+const Setting* findInSize(std::string_view key); // by its name in the table [size]
 // The known key that a misspelt one most likely means; empty if none is near.
 std::string_view nearestKey(std::string_view key);
+std::string_view nearestInSize(std::string_view key);
 
 } // namespace i2b

@@ -1,8 +1,7 @@
 #include "i2b/sizing/size_field.h"
 #include "i2b/core/error.h"
-#include "i2b/core/parallel.h"
+#include "i2b/sizing/sources.h"
 #include <fmt/format.h>
-#include <regex>
 
 namespace i2b {
 namespace {
@@ -46,20 +45,6 @@ int axisLevel(double base, double size) {
     return level;
 }
 
-// One size for all axes gives one level: base cells are cubes as nearly as the domain allows.
-LevelTriple levelFor(const Vec3& base, const Vec3& size) {
-    if (size.x == size.y && size.y == size.z) return allAxes(axisLevel(std::max(base.x, std::max(base.y, base.z)), size.x));
-    LevelTriple level;
-    for (std::size_t i = 0; i < 3; ++i) {
-        level[i] = static_cast<std::uint8_t>(axisLevel(base[static_cast<int>(i)], size[static_cast<int>(i)]));
-    }
-    return level;
-}
-
-Vec3 clamped(const Vec3& size, double lo, double hi) {
-    return {std::clamp(size.x, lo, hi), std::clamp(size.y, lo, hi), std::clamp(size.z, lo, hi)};
-}
-
 Box meshedBounds(const Surface& surface) {
     const Box body = surface.bounds();
     if (body.empty()) {
@@ -84,65 +69,65 @@ Lattice makeLattice(const Box& box, double maxSize) {
     return lattice;
 }
 
-void applyPartSizes(SizeField& field, const Surface& surface, const SizeOptions& size, double smallest) {
-    for (const PartSize& rule : size.parts) {
-        bool used = false;
-        const std::regex pattern(rule.part);
-        const Vec3 asked = clamped(rule.size, smallest, field.maxSize);
-        if (asked != rule.size) {
-            field.notes.push_back(fmt::format("size {:g} m of part '{}' clamped to {:g} m", rule.size.x, rule.part, asked.x));
-        }
-        for (std::size_t p = 0; p < surface.parts.size(); ++p) {
-            if (surface.parts[p].name != rule.part && !std::regex_match(surface.parts[p].name, pattern)) continue;
-            field.partLevel[p] = levelFor(field.lattice.base, asked);
-            used = true;
-        }
-        if (!used) field.notes.push_back(fmt::format("no part is named '{}'", rule.part));
-    }
+double largestCell(const Box& body, const SizeOptions& size, const DomainOptions& domain) {
+    if (size.max > 0) return size.max;
+    const Vec3 e = (domain.box ? *domain.box : body).extent(), b = body.extent();
+    const double bodyLength = std::max(b.x, std::max(b.y, b.z));
+    const double limit = resolvedFlow(domain) == Flow::internal ? bodyLength / 8
+                                                                : std::min(bodyLength, std::max(e.x, std::max(e.y, e.z)));
+    return multipleBelow(size.surface, std::max(size.surface, limit));
+}
+
+Box domainBox(const Box& body, double maxSize, const DomainOptions& domain) {
+    const Box box = domain.box ? *domain.box : defaultBox(body, maxSize, resolvedFlow(domain));
+    if (box.overlaps(body)) return box;
+    throw Error(ErrorKind::input, "the domain box holds none of the geometry",
+                fmt::format("box ({:g} {:g} {:g}) to ({:g} {:g} {:g}), geometry ({:g} {:g} {:g}) to ({:g} {:g} {:g})",
+                            box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z, body.lo.x, body.lo.y, body.lo.z,
+                            body.hi.x, body.hi.y, body.hi.z),
+                "check --box and --scale");
 }
 
 } // namespace
 
+LevelTriple levelFor(const Lattice& lattice, const Vec3& size) {
+    const Vec3& base = lattice.base;
+    if (size == sameSize(size.x)) return allAxes(axisLevel(std::max(base.x, std::max(base.y, base.z)), size.x));
+    LevelTriple level;
+    for (std::size_t i = 0; i < 3; ++i) {
+        level[i] = static_cast<std::uint8_t>(axisLevel(base[static_cast<int>(i)], size[static_cast<int>(i)]));
+    }
+    return level;
+}
+
 SizeField makeSizeField(const Surface& surface, const SizeOptions& size, const DomainOptions& domain) {
     const Box body = meshedBounds(surface);
-    const Vec3 e = (domain.box ? *domain.box : body).extent();
-    const Vec3 b = body.extent();
-    const double bodyLength = std::max(b.x, std::max(b.y, b.z));
-    const Flow flow = resolvedFlow(domain);
-    double maxSize = size.max;
-    if (maxSize <= 0) {
-        const double limit = flow == Flow::internal ? bodyLength / 8 : std::min(bodyLength, std::max(e.x, std::max(e.y, e.z)));
-        maxSize = multipleBelow(size.surface, std::max(size.surface, limit));
-    }
-    const Box box = domain.box ? *domain.box : defaultBox(body, maxSize, flow);
-    if (!box.overlaps(body)) {
-        throw Error(ErrorKind::input, "the domain box holds none of the geometry",
-                    fmt::format("box ({:g} {:g} {:g}) to ({:g} {:g} {:g}), geometry ({:g} {:g} {:g}) to ({:g} {:g} {:g})",
-                                box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z, body.lo.x, body.lo.y,
-                                body.lo.z, body.hi.x, body.hi.y, body.hi.z),
-                    "check --box and --scale");
-    }
     SizeField field;
-    field.lattice = makeLattice(box, maxSize);
-    field.bufferCells = std::max(1, size.bufferCells);
     field.surfaceSize = size.surface;
-    field.maxSize = maxSize;
-    const double smallest = size.min > 0 ? size.min : 0;
-    field.partLevel.assign(surface.parts.size(), levelFor(field.lattice.base, sameSize(size.surface)));
-    applyPartSizes(field, surface, size, smallest);
-    for (const BoxSize& rule : size.boxes) {
-        field.boxes.push_back({rule.box, levelFor(field.lattice.base, clamped(rule.size, smallest, maxSize))});
-    }
-    for (const LevelTriple& level : field.partLevel) field.lattice.maxLevel = std::max(field.lattice.maxLevel, level.finest());
-    for (const LevelBox& rule : field.boxes) field.lattice.maxLevel = std::max(field.lattice.maxLevel, rule.level.finest());
-    field.minSize = field.lattice.h(field.lattice.maxLevel);
-    for (std::int32_t n : field.lattice.count) {
-        if (std::ldexp(n, field.lattice.maxLevel) > double(1 << 30)) {
+    field.maxSize = largestCell(body, size, domain);
+    field.lattice = makeLattice(domainBox(body, field.maxSize, domain), field.maxSize);
+    field.bufferCells = std::max(1, size.bufferCells);
+    field.partLevel.assign(surface.parts.size(), levelFor(field.lattice, sameSize(size.surface)));
+    addSources(field, surface, size);
+    settleLevels(field);
+    return field;
+}
+
+void settleLevels(SizeField& field) {
+    Lattice& lattice = field.lattice;
+    const auto raise = [&](const LevelTriple& level) { lattice.maxLevel = std::max(lattice.maxLevel, level.finest()); };
+    for (const LevelTriple& level : field.partLevel) raise(level);
+    for (const LevelTriple& level : field.triangleLevel) raise(level);
+    for (const LevelBox& rule : field.boxes) raise(rule.level);
+    for (const LevelShape& rule : field.shapes) raise(rule.level);
+    for (const LevelCells& gap : field.gaps) raise(gap.level);
+    field.minSize = lattice.h(lattice.maxLevel);
+    for (std::int32_t n : lattice.count) {
+        if (std::ldexp(n, lattice.maxLevel) > double(1 << 30)) {
             throw Error(ErrorKind::input, fmt::format("cells of {:g} m are too small for the domain", field.minSize),
                         "more than 2^30 along an axis", "give a larger --size or a smaller --box");
         }
     }
-    return field;
 }
 
 std::vector<LevelTriple> SizeField::targets() const {
@@ -161,43 +146,6 @@ std::string SizeField::validate() const {
         if (level.finest() > lattice.maxLevel) return "part level out of range";
     }
     return "";
-}
-
-double estimateBytes(const Surface& surface, const SizeField& field, int layers, bool gridOnly) {
-    // Cells that a triangle cuts: its area over h^2, half as much again for slanted ones, and one for itself; the
-    // grid then has about ten cells beside every cut one, over all levels.
-    double cut = 0, wall = 0;
-    const Box domain = field.lattice.domain();
-    const double sum = orderedReduce(
-        surface.triangles.size(), 0.0,
-        [&](std::size_t begin, std::size_t end) {
-            double s = 0;
-            for (std::size_t t = begin; t < end; ++t) {
-                Box box;
-                for (std::uint32_t v : surface.triangles[t]) box.add(surface.points[v]);
-                if (!box.overlaps(domain)) continue;
-                const Vec3& a = surface.points[surface.triangles[t][0]];
-                const double area = 0.5 * norm(cross(surface.points[surface.triangles[t][1]] - a,
-                                                     surface.points[surface.triangles[t][2]] - a));
-                const double h = field.lattice.h(field.partLevel[static_cast<std::size_t>(surface.partOf[t])]);
-                s += area / (h * h);
-            }
-            return s;
-        },
-        [](double a, double b) { return a + b; });
-    wall = sum;
-    cut = 1.5 * sum;
-    double cells = 8 * cut + field.lattice.count[0] * double(field.lattice.count[1]) * field.lattice.count[2];
-    for (const LevelBox& rule : field.boxes) {
-        double n = 1;
-        const Vec3 h = field.lattice.cellSize(rule.level);
-        for (int i = 0; i < 3; ++i) {
-            n *= std::max(0.0, std::min(rule.box.hi[i], domain.hi[i]) - std::max(rule.box.lo[i], domain.lo[i])) / h[i] + 1;
-        }
-        cells += n;
-    }
-    const double fixed = 150e6 + 250.0 * static_cast<double>(surface.triangles.size());
-    return fixed + (gridOnly ? 3 * cells : 250 * cells + 800 * wall + 150 * wall * layers);
 }
 
 } // namespace i2b

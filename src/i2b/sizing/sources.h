@@ -1,0 +1,10 @@
+// The places that the user names, with a level each.
+#pragma once
+#include "i2b/sizing/size_field.h"
+
+namespace i2b {
+
+// Parts, boxes and shapes. Sizes beyond the limits are clamped, with a note; so are ratios of the sizes along the axes.
+void addSources(SizeField& field, const Surface& surface, const SizeOptions& size);
+
+} // namespace i2b
