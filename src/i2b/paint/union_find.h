@@ -15,7 +15,7 @@ class UnionFind {
     std::uint32_t find(std::uint32_t i) {
         for (std::uint32_t p = parent_[i].load(); p != i; p = parent_[i].load()) {
             const std::uint32_t grand = parent_[p].load();
-            parent_[i].compare_exchange_weak(p, grand); // path halving; losing the race does no harm
+            if (grand != p) parent_[i].compare_exchange_weak(p, grand); // path halving; losing the race does no harm
             i = grand;
         }
         return i;
