@@ -92,15 +92,17 @@ class SideLookup {
 // Voxels of the level that hold a cut cell, a part of one or several, grown by the half width.
 Mask::Ptr bandTopology(const CellGrid& grid, const CutCells& cut, int level, int halfWidth) {
     auto band = std::make_shared<Mask>();
+    openvdb::tree::ValueAccessor<Mask> at(*band);
     for (std::size_t l = 0; l < cut.levels.size(); ++l) {
         if (!cut.levels[l]) continue;
         const int shift = level - static_cast<int>(l);
         for (auto voxel = cut.levels[l]->cbeginValueOn(); voxel; ++voxel) {
             const Coord c = voxel.getCoord();
             if (shift <= 0) {
-                band->setValueOn(Coord(c.x() >> -shift, c.y() >> -shift, c.z() >> -shift));
+                at.setValueOn(Coord(c.x() >> -shift, c.y() >> -shift, c.z() >> -shift));
             } else {
                 const Coord lo(c.x() << shift, c.y() << shift, c.z() << shift);
+                at.clear();
                 band->fill(openvdb::CoordBBox(lo, lo.offsetBy((1 << shift) - 1)), true, true);
             }
         }
@@ -230,47 +232,40 @@ class BandBuilder {
     std::unordered_map<Coord, std::size_t, std::hash<Coord>> number_; // of the leaf at an origin
 };
 
-// The cells that are not fluid and not cut, as inactive values inside the geometry.
-std::vector<ValuePiece> solidPieces(const CellGrid& grid, const CutCells& cut,
-                                    const std::vector<Mask::Ptr>& fluid, float value) {
-    std::vector<Mask::Ptr> solid;
-    for (std::size_t l = 0; l < grid.levels.size(); ++l) {
-        solid.push_back(std::make_shared<Mask>(*grid.levels[l].cells));
-        if (l < cut.levels.size() && cut.levels[l]) solid[l]->topologyDifference(*cut.levels[l]);
-        if (l < fluid.size() && fluid[l]) solid[l]->topologyDifference(*fluid[l]);
+// The cells that are neither fluid nor cut, as inactive values inside the geometry.
+void addSolid(const CellGrid& grid, const CutCells& cut, const std::vector<Mask::Ptr>& fluid, int level, float value,
+              openvdb::FloatTree& tree) {
+    PieceTree<openvdb::FloatTree> pieces(tree, level, false);
+    for (std::size_t l = 0; l < grid.levels.size() && static_cast<int>(l) <= level; ++l) {
+        for (auto leaf = grid.levels[l].cells->cbeginLeaf(); leaf; ++leaf) {
+            ValuePiece piece = pieceOf(*leaf, static_cast<int>(l), value);
+            for (const auto* masks : {&cut.levels, &fluid}) {
+                if (l >= masks->size() || !(*masks)[l]) continue;
+                const MaskLeaf* other = (*masks)[l]->probeConstLeaf(leaf->origin());
+                for (openvdb::Index x = 0; other && x < 8; ++x) piece.mask[x] &= ~other->getValueMask().getWord<std::uint64_t>(x);
+            }
+            pieces.add(piece);
+        }
     }
-    std::vector<ValuePiece> pieces = piecesOf(solid);
-    for (ValuePiece& piece : pieces) piece.value = value;
-    return pieces;
 }
 
 } // namespace
 
-std::vector<ValuePiece> piecesOf(const std::vector<Mask::Ptr>& levels, float value) {
-    std::vector<ValuePiece> pieces;
-    for (std::size_t l = 0; l < levels.size(); ++l) {
-        if (!levels[l]) continue;
-        for (auto leaf = levels[l]->cbeginLeaf(); leaf; ++leaf) {
-            const Coord origin = leaf->origin();
-            ValuePiece piece{static_cast<int>(l),
-                             {origin.x(), origin.y(), origin.z()},
-                             {},
-                             value < 0 ? static_cast<float>(l) : value};
-            for (openvdb::Index x = 0; x < 8; ++x)
-                piece.mask[x] = leaf->getValueMask().getWord<std::uint64_t>(x);
-            pieces.push_back(piece);
-        }
-    }
-    return pieces;
-}
-
-int bandLevel(const CutCells& cut) {
+int bandLevel(const CutCells& cut, std::uint64_t mostCells) {
     int best = -1;
     std::uint64_t most = 0;
+    std::vector<double> counts;
     for (std::size_t l = 0; l < cut.levels.size(); ++l) {
         const std::uint64_t count = cut.levels[l] ? cut.levels[l]->activeVoxelCount() : 0;
         if (count > 0 && count >= most) best = static_cast<int>(l), most = count;
+        counts.push_back(static_cast<double>(count));
     }
+    const auto cellsAt = [&](int level) { // a surface has four times the cells on the next finer level
+        double sum = 0;
+        for (std::size_t l = 0; l < counts.size(); ++l) sum += std::ldexp(counts[l], 2 * (level - static_cast<int>(l)));
+        return sum;
+    };
+    while (best > 0 && cellsAt(best) > static_cast<double>(mostCells)) --best;
     return best;
 }
 
@@ -289,8 +284,7 @@ SurfaceBand buildSurfaceBand(const CellGrid& grid, const CutCells& cut, const Re
     result.distance = std::make_shared<openvdb::FloatTree>(width);
     // Beyond the band the tree must know inside from outside, too, or a filled volume made from it would be
     // hollow.
-    PieceTree<openvdb::FloatTree>(*result.signedDistance, level, false)
-        .add(solidPieces(grid, cut, fluid, -width));
+    addSolid(grid, cut, fluid, level, -width, *result.signedDistance);
     builder.fill(width, *result.signedDistance, *result.distance);
     return result;
 }

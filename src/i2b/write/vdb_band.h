@@ -13,6 +13,7 @@
 #include "i2b/paint/regions.h"
 #include "i2b/write/vdb_pieces.h"
 #include <functional>
+#include <limits>
 
 namespace i2b {
 
@@ -26,8 +27,9 @@ struct SurfaceBand {
 };
 
 // The level that most of the cut cells have (the finer one of equals): a band there shows all of the
-// geometry, at a cost that goes with the number of cut cells.
-int bandLevel(const CutCells& cut);
+// geometry, at a cost that goes with the number of cut cells. A coarser one where the geometry would have more than
+// mostCells cells there.
+int bandLevel(const CutCells& cut, std::uint64_t mostCells = std::numeric_limits<std::uint64_t>::max());
 
 // Fluid are the cells of painted regions, or, with no regions, the kept ones. halfWidth is in voxels of the
 // level.

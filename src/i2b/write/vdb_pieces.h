@@ -22,11 +22,15 @@ struct ValuePiece {
     float value = 0;
 };
 
-// One piece for each leaf node of the masks; their value is the level, or `value` if that is not negative.
-std::vector<ValuePiece> piecesOf(const std::vector<Mask::Ptr>& levels, float value = -1);
+// A piece of a mask's leaf node.
+inline ValuePiece pieceOf(const Mask::LeafNodeType& leaf, int level, float value) {
+    ValuePiece piece{level, {leaf.origin().x(), leaf.origin().y(), leaf.origin().z()}, {}, value};
+    for (openvdb::Index x = 0; x < 8; ++x) piece.mask[x] = leaf.getValueMask().getWord<std::uint64_t>(x);
+    return piece;
+}
 
-// Adds the pieces to a tree on the lattice of level `finest`, as active or as inactive values. Pieces of
-// finer levels are skipped; no two may overlap.
+// Adds pieces to a tree on the lattice of level `finest`, as active or as inactive values. Pieces of finer levels are
+// skipped; no two may overlap.
 template <class Tree>
 class PieceTree {
   public:
@@ -34,13 +38,8 @@ class PieceTree {
     PieceTree(Tree& tree, int finest, bool active = true)
         : tree_(tree), at_(tree), finest_(finest), active_(active) {}
 
-    void add(const std::vector<ValuePiece>& pieces) {
-        for (const ValuePiece& piece : pieces)
-            if (piece.level <= finest_) add(piece);
-    }
-
-  private:
     void add(const ValuePiece& piece) {
+        if (piece.level > finest_) return;
         const int shift = finest_ - piece.level;
         const auto value = static_cast<Value>(piece.value);
         if (shift > 3) return addLargeCells(piece, shift, value);
@@ -49,6 +48,8 @@ class PieceTree {
             for (int y = 0; y < 8; y += cells)
                 for (int z = 0; z < 8; z += cells) addBlock(piece, {x, y, z}, cells, shift, value);
     }
+
+  private:
 
     static bool has(const ValuePiece& piece, int x, int y, int z) {
         return (piece.mask[static_cast<std::size_t>(x)] >> (y * 8 + z)) & 1;
@@ -59,31 +60,58 @@ class PieceTree {
                 (piece.origin[2] + z) << shift};
     }
 
+    // Cells of 16 to 64: eight and more fill a block of 128, which is one tile of the next level and costs no node.
     void addLargeCells(const ValuePiece& piece, int shift, const Value& value) {
-        for (int x = 0; x < 8; ++x)
-            for (std::uint64_t word = piece.mask[static_cast<std::size_t>(x)]; word; word &= word - 1) {
-                const int bit = std::countr_zero(word);
-                const openvdb::Coord lo = place(piece, x, bit >> 3, bit & 7, shift);
-                at_.clear(); // it may hold nodes that the fill replaces
-                tree_.sparseFill(openvdb::CoordBBox(lo, lo.offsetBy((1 << shift) - 1)), value, active_);
-            }
+        const int cells = shift < 7 ? 128 >> shift : 1; // of a block along an edge
+        for (int x = 0; x < 8; x += cells)
+            for (int y = 0; y < 8; y += cells)
+                for (int z = 0; z < 8; z += cells) {
+                    const int n = countIn(piece, {x, y, z}, cells);
+                    if (n == cells * cells * cells)
+                        addTiles(place(piece, x, y, z, shift), cells << shift, value);
+                    else if (n > 0)
+                        forCells(piece, {x, y, z}, cells, [&](int i, int j, int k) {
+                            addTiles(place(piece, i, j, k, shift), 1 << shift, value);
+                        });
+                }
+    }
+
+    template <class Body>
+    static void forCells(const ValuePiece& piece, const std::array<int, 3>& at, int cells, const Body& body) {
+        for (int x = at[0]; x < at[0] + cells; ++x)
+            for (int y = at[1]; y < at[1] + cells; ++y)
+                for (int z = at[2]; z < at[2] + cells; ++z)
+                    if (has(piece, x, y, z)) body(x, y, z);
+    }
+
+    static int countIn(const ValuePiece& piece, const std::array<int, 3>& at, int cells) {
+        int count = 0;
+        const std::uint64_t row = ((std::uint64_t(1) << cells) - 1) << at[2]; // along z
+        for (int x = at[0]; x < at[0] + cells; ++x)
+            for (int y = at[1]; y < at[1] + cells; ++y)
+                count += std::popcount(piece.mask[static_cast<std::size_t>(x)] >> (y * 8) & row);
+        return count;
+    }
+
+    // A cell in the largest tiles that it is made of: 8, 128 or 4096 finest cells along an edge.
+    void addTiles(const openvdb::Coord& lo, int edge, const Value& value) {
+        const int tile = edge >= 4096 ? 4096 : edge >= 128 ? 128 : 8;
+        const openvdb::Index level = edge >= 4096 ? 3 : edge >= 128 ? 2 : 1;
+        for (int x = 0; x < edge; x += tile)
+            for (int y = 0; y < edge; y += tile)
+                for (int z = 0; z < edge; z += tile) at_.addTile(level, lo.offsetBy(x, y, z), value, active_);
     }
 
     void addBlock(const ValuePiece& piece, const std::array<int, 3>& at, int cells, int shift,
                   const Value& value) {
-        int count = 0;
-        for (int x = at[0]; x < at[0] + cells; ++x)
-            for (int y = at[1]; y < at[1] + cells; ++y)
-                for (int z = at[2]; z < at[2] + cells; ++z) count += has(piece, x, y, z);
+        const int count = countIn(piece, at, cells);
         if (count == 0) return;
         const openvdb::Coord origin = place(piece, at[0], at[1], at[2], shift);
         if (count == cells * cells * cells) return at_.addTile(1, origin, value, active_);
         auto* leaf = at_.touchLeaf(origin);
-        for (int x = at[0]; x < at[0] + cells; ++x)
-            for (int y = at[1]; y < at[1] + cells; ++y)
-                for (int z = at[2]; z < at[2] + cells; ++z)
-                    if (has(piece, x, y, z))
-                        setVoxels(*leaf, place(piece, x, y, z, shift), 1 << shift, value);
+        forCells(piece, at, cells, [&](int x, int y, int z) {
+            setVoxels(*leaf, place(piece, x, y, z, shift), 1 << shift, value);
+        });
     }
 
     template <class Leaf>

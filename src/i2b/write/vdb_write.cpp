@@ -1,11 +1,8 @@
 #include "i2b/write/vdb_write.h"
-#include "i2b/core/checksum.h"
-#include "i2b/core/error.h"
-#include "i2b/write/output_file.h"
+#include "i2b/write/vdb_file.h"
 #include <algorithm>
-#include <cerrno>
+#include <deque>
 #include <fmt/format.h>
-#include <fstream>
 #include <openvdb/tools/Prune.h>
 #include <tbb/parallel_invoke.h>
 
@@ -13,6 +10,7 @@ namespace i2b {
 namespace {
 
 using openvdb::GridBase;
+using Maker = std::function<GridBase::Ptr()>; // null: there is nothing to write
 
 // Voxel (i, j, k) is the cell (i, j, k) of the lattice, by its centre.
 openvdb::math::Transform::Ptr cellTransform(const Lattice& lattice, const LevelTriple& level) {
@@ -28,11 +26,6 @@ openvdb::math::Transform::Ptr cellTransform(const Lattice& lattice, const LevelT
     return std::make_shared<openvdb::math::Transform>(map);
 }
 
-LevelTriple cube(int level) {
-    const auto l = static_cast<std::uint8_t>(level);
-    return {l, l, l};
-}
-
 template <class Tree>
 GridBase::Ptr makeGrid(typename Tree::Ptr tree, const std::string& name, const Lattice& lattice,
                        const LevelTriple& level) {
@@ -45,78 +38,131 @@ GridBase::Ptr makeGrid(typename Tree::Ptr tree, const std::string& name, const L
 }
 
 template <class Tree>
-GridBase::Ptr pieceGrid(const std::vector<ValuePiece>& pieces, typename Tree::ValueType background,
-                        const std::string& name, const Lattice& lattice) {
+GridBase::Ptr valueGrid(typename Tree::ValueType background, const std::string& name, const Lattice& lattice,
+                        const std::function<void(PieceTree<Tree>&)>& fill) {
     auto tree = std::make_shared<Tree>(background);
-    PieceTree<Tree>(*tree, lattice.maxLevel).add(pieces);
+    PieceTree<Tree> pieces(*tree, lattice.maxLevel);
+    fill(pieces);
     openvdb::tools::prune(*tree);
-    return makeGrid<Tree>(tree, name, lattice, cube(lattice.maxLevel));
+    return makeGrid<Tree>(tree, name, lattice, allAxes(lattice.maxLevel));
 }
 
-std::vector<ValuePiece> regionPieces(const Regions& regions) {
-    std::vector<ValuePiece> pieces;
-    for (std::size_t l = 0; l < regions.pieces.size(); ++l)
-        for (const RegionPiece& piece : regions.pieces[l])
-            pieces.push_back(
-                {static_cast<int>(l), piece.origin, piece.mask, static_cast<float>(piece.region)});
-    return pieces;
+template <class Tree>
+void addLeaves(PieceTree<Tree>& pieces, const std::vector<Mask::Ptr>& levels) {
+    for (std::size_t l = 0; l < levels.size(); ++l)
+        if (levels[l])
+            for (auto leaf = levels[l]->cbeginLeaf(); leaf; ++leaf) pieces.add(pieceOf(*leaf, static_cast<int>(l), 1));
 }
 
-// level, region, cut and kept, each built by one thread while others build the rest.
-void addValueGrids(const VdbInput& input, std::vector<GridBase::Ptr>& grids) {
+void addValueGrids(const VdbInput& input, std::deque<Maker>& makers) {
     const Lattice& lattice = input.grid.lattice;
-    std::array<GridBase::Ptr, 4> made;
-    tbb::parallel_invoke(
-        [&] {
-            std::vector<Mask::Ptr> cells;
-            for (const CellLevel& level : input.grid.levels) cells.push_back(level.cells);
-            made[0] = pieceGrid<openvdb::FloatTree>(piecesOf(cells), -1, "level", lattice);
-        },
-        [&] {
-            if (input.regions)
-                made[1] = pieceGrid<openvdb::FloatTree>(regionPieces(*input.regions), -1, "region", lattice);
-        },
-        [&] {
-            if (input.cut)
-                made[2] = pieceGrid<openvdb::BoolTree>(piecesOf(input.cut->levels, 1), false, "cut", lattice);
-        },
-        [&] {
-            if (input.kept)
-                made[3] =
-                    pieceGrid<openvdb::BoolTree>(piecesOf(input.kept->levels, 1), false, "kept", lattice);
+    makers.push_back([&] {
+        return valueGrid<openvdb::FloatTree>(-1, "level", lattice, [&](auto& pieces) {
+            for (std::size_t l = 0; l < input.grid.levels.size(); ++l)
+                for (auto leaf = input.grid.levels[l].cells->cbeginLeaf(); leaf; ++leaf)
+                    pieces.add(pieceOf(*leaf, static_cast<int>(l), static_cast<float>(l)));
         });
-    for (const GridBase::Ptr& grid : made)
-        if (grid) grids.push_back(grid);
+    });
+    if (input.regions)
+        makers.push_back([&] {
+            return valueGrid<openvdb::FloatTree>(-1, "region", lattice, [&](auto& pieces) {
+                for (std::size_t l = 0; l < input.regions->pieces.size(); ++l)
+                    for (const RegionPiece& piece : input.regions->pieces[l])
+                        pieces.add({static_cast<int>(l), piece.origin, piece.mask, static_cast<float>(piece.region)});
+            });
+        });
+    if (input.cut)
+        makers.push_back([&] {
+            return valueGrid<openvdb::BoolTree>(false, "cut", lattice,
+                                                [&](auto& pieces) { addLeaves(pieces, input.cut->levels); });
+        });
+    if (input.kept)
+        makers.push_back([&] {
+            return valueGrid<openvdb::BoolTree>(false, "kept", lattice,
+                                                [&](auto& pieces) { addLeaves(pieces, input.kept->levels); });
+        });
 }
 
 void addSurfaceGrids(const VdbInput& input, const VdbWriteOptions& options, const Context& context,
-                     std::vector<GridBase::Ptr>& grids) {
-    const int level = options.bandLevel >= 0 ? std::min(options.bandLevel, input.grid.lattice.maxLevel)
-                                             : bandLevel(*input.cut);
+                     std::deque<Maker>& makers) {
+    const Lattice& lattice = input.grid.lattice;
+    const int level = options.bandLevel >= 0 ? std::min(options.bandLevel, lattice.maxLevel)
+                                             : bandLevel(*input.cut, options.mostBandCells);
     if (level < 0) return; // nothing is cut
-    const SurfaceBand band = buildSurfaceBand(input.grid, *input.cut, input.regions, input.kept,
-                                              input.distance, level, options.halfWidth, context);
-    grids.push_back(
-        makeGrid<openvdb::FloatTree>(band.signedDistance, "surface", input.grid.lattice, cube(level)));
-    // A level set has cubes for voxels by definition.
-    if (grids.back()->hasUniformVoxels()) grids.back()->setGridClass(openvdb::GRID_LEVEL_SET);
-    grids.push_back(makeGrid<openvdb::FloatTree>(band.distance, "distance", input.grid.lattice, cube(level)));
+    const auto band = std::make_shared<SurfaceBand>();
+    makers.push_back([&, band, level] {
+        *band = buildSurfaceBand(input.grid, *input.cut, input.regions, input.kept, input.distance, level,
+                                 options.halfWidth, context);
+        GridBase::Ptr grid = makeGrid<openvdb::FloatTree>(std::move(band->signedDistance), "surface", lattice, allAxes(level));
+        // A level set has cubes for voxels by definition.
+        if (grid->hasUniformVoxels()) grid->setGridClass(openvdb::GRID_LEVEL_SET);
+        return grid;
+    });
+    makers.push_back([&, band, level] {
+        return makeGrid<openvdb::FloatTree>(std::move(band->distance), "distance", lattice, allAxes(level));
+    });
 }
 
-void addCellMasks(const CellGrid& grid, std::vector<GridBase::Ptr>& grids) {
-    for (const CellLevel& level : grid.levels) {
-        if (!level.cells || level.cells->empty()) continue;
-        const LevelTriple& l = level.level;
-        const bool same = l.x == l.y && l.y == l.z;
-        const std::string name =
-            same ? fmt::format("cells_L{}", l.x) : fmt::format("cells_L{}_{}_{}", l.x, l.y, l.z);
-        auto tree = std::make_shared<openvdb::BoolTree>(*level.cells, false, true, openvdb::TopologyCopy());
-        openvdb::tools::prune(*tree);
-        grids.push_back(makeGrid<openvdb::BoolTree>(tree, name, grid.lattice, l));
+// Bits of one level as a tree of truth values: full nodes are tiles at once, so that only ragged ones take room.
+class MaskGridBuilder {
+  public:
+    using BoolLeaf = openvdb::BoolTree::LeafNodeType;
+
+    void add(const Mask::LeafNodeType& leaf) {
+        if (leaf.getValueMask().isOff()) return;
+        if (leaf.getValueMask().isOn())
+            at_.addTile(1, leaf.origin(), true, true);
+        else
+            at_.addLeaf(new BoolLeaf(leaf, false, true, openvdb::TopologyCopy()));
+    }
+    GridBase::Ptr grid(const std::string& name, const Lattice& lattice, const LevelTriple& level) {
+        if (tree_->empty()) return nullptr;
+        openvdb::tools::prune(*tree_);
+        const std::string suffix = level.same() ? fmt::format("{}", level.x) : fmt::format("{}_{}_{}", level.x, level.y, level.z);
+        return makeGrid<openvdb::BoolTree>(tree_, name + "_L" + suffix, lattice, level);
+    }
+
+  private:
+    openvdb::BoolTree::Ptr tree_ = std::make_shared<openvdb::BoolTree>(false);
+    openvdb::tree::ValueAccessor<openvdb::BoolTree> at_{*tree_};
+};
+
+GridBase::Ptr maskGrid(const CellGrid& grid, std::size_t l, const Mask::Ptr& mask, const std::string& name) {
+    MaskGridBuilder builder;
+    if (mask)
+        for (auto leaf = mask->cbeginLeaf(); leaf; ++leaf) builder.add(*leaf);
+    return builder.grid(name, grid.lattice, grid.levels[l].level);
+}
+
+// The cells of all painted regions. Pieces of one node follow each other.
+GridBase::Ptr paintedGrid(const CellGrid& grid, std::size_t l, const Regions& regions) {
+    MaskGridBuilder builder;
+    const std::vector<RegionPiece>& pieces = regions.pieces[l];
+    for (std::size_t i = 0, end = 0; i < pieces.size(); i = end) {
+        Mask::LeafNodeType leaf(openvdb::Coord(pieces[i].origin.data()), false);
+        openvdb::util::NodeMask<3> bits;
+        for (end = i; end < pieces.size() && pieces[end].origin == pieces[i].origin; ++end)
+            if (regions.table[static_cast<std::size_t>(pieces[end].region)].painted)
+                for (openvdb::Index x = 0; x < 8; ++x) bits.getWord<std::uint64_t>(x) |= pieces[end].mask[x];
+        leaf.setValueMask(bits);
+        builder.add(leaf);
+    }
+    return builder.grid("painted", grid.lattice, grid.levels[l].level);
+}
+
+// By level, in place of the value grids.
+void addStageMasks(const VdbInput& input, std::deque<Maker>& makers) {
+    for (std::size_t l = 0; l < input.grid.levels.size(); ++l) {
+        if (input.regions && l < input.regions->pieces.size())
+            makers.push_back([&, l] { return paintedGrid(input.grid, l, *input.regions); });
+        if (input.cut && l < input.cut->levels.size())
+            makers.push_back([&, l] { return maskGrid(input.grid, l, input.cut->levels[l], "cut"); });
+        if (input.kept && l < input.kept->levels.size())
+            makers.push_back([&, l] { return maskGrid(input.grid, l, input.kept->levels[l], "kept"); });
     }
 }
 
-openvdb::MetaMap metadata(const VdbInput& input, const VdbWriteOptions& options) {
+openvdb::MetaMap metadata(const VdbInput& input, const VdbWriteOptions& options, const std::string& masks) {
     openvdb::MetaMap meta;
     meta.insertMeta("program", openvdb::StringMetadata("i2b"));
     meta.insertMeta("version", openvdb::StringMetadata(options.version));
@@ -125,60 +171,27 @@ openvdb::MetaMap metadata(const VdbInput& input, const VdbWriteOptions& options)
     meta.insertMeta("size_min", openvdb::DoubleMetadata(options.minSize));
     meta.insertMeta("size_max", openvdb::DoubleMetadata(options.maxSize));
     meta.insertMeta("levels", openvdb::Int32Metadata(input.grid.lattice.maxLevel + 1));
+    if (!masks.empty()) meta.insertMeta("masks", openvdb::StringMetadata(masks));
     return meta;
 }
 
-// The library's own File does not look whether its stream failed: a full disk would pass for success.
-class CheckedArchive : public openvdb::io::Archive {
-  public:
-    CheckedArchive() { setCompression(openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK); }
-
-    void save(const std::filesystem::path& path, const std::vector<GridBase::Ptr>& grids,
-              const openvdb::MetaMap& meta) const {
-        const openvdb::GridCPtrVec all(grids.begin(), grids.end());
-        errno = 0;
-        std::ofstream out(path, std::ios::binary);
-        if (!out) throwSystemError("create the file", path, errno);
-        try {
-            out.exceptions(std::ios::failbit | std::ios::badbit);
-            write(out, all, true, meta);
-            out.close();
-        } catch (const std::ios::failure&) {
-            throwSystemError("write", path, errno ? errno : EIO);
-        } catch (const openvdb::Exception& problem) {
-            if (!out || errno == ENOSPC) throwSystemError("write", path, errno ? errno : EIO);
-            throw Error(ErrorKind::internal, problem.what(), path.string(), "report this");
-        }
+// Makes each grid while the one before is written.
+void writeAll(VdbFile& file, std::deque<Maker> makers, const Context& context) {
+    GridBase::Ptr ready;
+    while (ready || !makers.empty()) {
+        context.checkCancelled();
+        const Maker make = makers.empty() ? Maker() : std::move(makers.front());
+        if (make) makers.pop_front();
+        GridBase::Ptr next;
+        tbb::parallel_invoke(
+            [&] {
+                if (ready) file.add(*ready);
+            },
+            [&] {
+                if (make) next = make();
+            });
+        ready = std::move(next);
     }
-
-  private:
-    using Archive::write;
-};
-
-// The library draws a random UUID; ours says what the file holds. It stands behind the magic number, three
-// versions and a flag.
-void settleUuid(const std::filesystem::path& path) {
-    constexpr std::streamoff place = 8 + 3 * 4 + 1;
-    constexpr std::size_t length = 36;
-    std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
-    std::string text(length, ' ');
-    file.seekg(place);
-    file.read(text.data(), length);
-    if (!file || text[8] != '-' || text[23] != '-') return; // a later layout: leave it
-    Checksum sum;
-    std::vector<char> buffer(std::size_t(1) << 20);
-    while (file.read(buffer.data(), static_cast<std::streamsize>(buffer.size())), file.gcount() > 0)
-        sum.bytes(buffer.data(), static_cast<std::size_t>(file.gcount()));
-    file.clear();
-    const std::string a = sum.hex();
-    sum.add(std::uint64_t(1));
-    const std::string b = sum.hex();
-    text = fmt::format("{}-{}-4{}-8{}-{}", a.substr(0, 8), a.substr(8, 4), a.substr(13, 3), b.substr(1, 3),
-                       b.substr(4, 12));
-    file.seekp(place);
-    file.write(text.data(), length);
-    file.close();
-    if (!file) throwSystemError("write", path, errno ? errno : EIO);
 }
 
 } // namespace
@@ -186,21 +199,24 @@ void settleUuid(const std::filesystem::path& path) {
 void writeVdb(const VdbInput& input, const std::filesystem::path& path, const VdbWriteOptions& options,
               const Context& context) {
     openvdb::initialize();
-    const bool cubes =
-        std::all_of(input.grid.levels.begin(), input.grid.levels.end(), [](const CellLevel& level) {
-            return level.level.x == level.level.y && level.level.y == level.level.z;
-        });
-    std::vector<GridBase::Ptr> grids;
-    if (options.values && cubes) {
-        if (input.cut && input.distance) addSurfaceGrids(input, options, context, grids);
-        context.checkCancelled();
-        addValueGrids(input, grids);
-    }
-    context.checkCancelled();
-    addCellMasks(input.grid, grids);
-    context.checkCancelled();
-    CheckedArchive().save(path, grids, metadata(input, options));
-    settleUuid(path);
+    const bool cubes = std::all_of(input.grid.levels.begin(), input.grid.levels.end(),
+                                   [](const CellLevel& level) { return level.level.same(); });
+    std::uint64_t cells = 0;
+    for (const CellLevel& level : input.grid.levels) cells += level.cells ? level.cells->activeVoxelCount() : 0;
+    std::string masks;
+    if (!cubes)
+        masks = "the cells have no lattice in common: painted, cut and kept are masks by level";
+    else if (cells > options.mostValueCells)
+        masks = fmt::format("{} cells are many: painted, cut and kept are masks by level", cells);
+    std::deque<Maker> makers;
+    if (options.values && cubes && input.cut && input.distance) addSurfaceGrids(input, options, context, makers);
+    if (options.values && masks.empty()) addValueGrids(input, makers);
+    if (options.values && !masks.empty()) addStageMasks(input, makers);
+    for (std::size_t l = 0; l < input.grid.levels.size(); ++l)
+        makers.push_back([&, l] { return maskGrid(input.grid, l, input.grid.levels[l].cells, "cells"); });
+    VdbFile file(path, metadata(input, options, masks));
+    writeAll(file, std::move(makers), context);
+    file.close();
 }
 
 } // namespace i2b
