@@ -17,7 +17,7 @@ struct Ball {
     KeptCells kept;
     static constexpr double radius = 1.2;
 
-    static double distance(const Vec3& p) { return std::abs(norm(p) - radius); }
+    static double distance(const Vec3& p, double) { return std::abs(norm(p) - radius); }
 
     explicit Ball(int refine = 1) {
         grid.lattice = {{-4, -4, -4}, {1, 1, 1}, {8, 8, 8}, refine};

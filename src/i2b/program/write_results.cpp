@@ -43,7 +43,7 @@ void writeGridFile(const GridResult& result, const Options& options, AtomicFolde
     stage.items = result.grid.cellCount();
     const bool carved = !result.kept.levels.empty();
     const VdbInput input{result.grid, &result.cut, &result.regions, carved ? &result.kept : nullptr,
-                         [&](const Vec3& p) { return result.index->closest(p).distance; }};
+                         [&](const Vec3& p, double reach) { return result.index->closest(p, reach).distance; }};
     VdbWriteOptions vdb;
     vdb.caseName = std::filesystem::path(options.output.folder).filename().string();
     vdb.version = I2B_VERSION;

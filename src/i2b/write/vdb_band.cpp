@@ -133,13 +133,20 @@ class BandBuilder {
         parallelChunks(leaves_.size(), 16, [&](std::size_t begin, std::size_t end, std::size_t) {
             context.checkCancelled();
             const SideLookup sideOf(shared); // accessors are one thread's own
-            for (std::size_t i = begin; i < end; ++i)
+            for (std::size_t i = begin; i < end; ++i) {
+                Vec3 near;
+                double reach = std::numeric_limits<double>::infinity(); // of the geometry from near
                 for (openvdb::Index n = 0; n < 512; ++n) {
                     const Coord c = leaves_[i]->offsetToGlobalCoord(n);
                     blocks_[i].side[n] = sideOf(level_, c);
-                    if (leaves_[i]->isValueOn(n))
-                        blocks_[i].distance[n] = static_cast<float>(distance_(centre(c)));
+                    if (!leaves_[i]->isValueOn(n)) continue;
+                    const Vec3 p = centre(c);
+                    // It cannot be farther than by way of the voxel before: much is never looked at.
+                    reach = distance_(p, 1.000001 * (reach + norm(p - near)));
+                    near = p;
+                    blocks_[i].distance[n] = static_cast<float>(reach);
                 }
+            }
         });
     }
 
@@ -216,7 +223,7 @@ class BandBuilder {
         const Vec3 a = centre(from), b = centre(to);
         const double least = 1e-3 * length;
         for (double t = room; t < length - roomThere;) {
-            const double r = distance_(a + (b - a) * (t / length));
+            const double r = distance_(a + (b - a) * (t / length), std::numeric_limits<double>::infinity());
             if (r < least) return false;
             t += r;
         }

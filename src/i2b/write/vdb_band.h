@@ -17,8 +17,9 @@
 
 namespace i2b {
 
-// Distance to the geometry (m, not negative); called from many threads at once.
-using DistanceFunction = std::function<double(const Vec3&)>;
+// Distance to the geometry (m, not negative) where it is at most the given reach, else anything larger than the reach;
+// called from many threads at once.
+using DistanceFunction = std::function<double(const Vec3&, double reach)>;
 
 struct SurfaceBand {
     int level = 0;                          // of the lattice the trees lie on
