@@ -173,6 +173,31 @@ TEST(VdbWrite, AnisotropicLevels) {
     EXPECT_EQ(mask->indexToWorld(Coord(1, 1, 1)), openvdb::Vec3d(0.375, 1.5, 6));
 }
 
+// A grid too large for values has masks by level instead, and the file says so.
+TEST(VdbWrite, LargeGridsHaveMasks) {
+    const TempFolder temp;
+    const Ball ball(2);
+    ball.write(temp / "grid.vdb", {.caseName = {}, .version = {}, .mostValueCells = 10});
+    openvdb::io::File file((temp / "grid.vdb").string());
+    file.open(false);
+    EXPECT_THAT(file.getMetadata()->metaValue<std::string>("masks"), testing::HasSubstr("masks by level"));
+    for (const char* name : {"level", "region", "cut", "kept"}) EXPECT_FALSE(file.hasGrid(name)) << name;
+    EXPECT_TRUE(file.hasGrid("surface"));
+    for (std::size_t l = 0; l < 3; ++l) {
+        std::uint64_t painted = 0;
+        for (const RegionPiece& piece : ball.regions.pieces[l])
+            if (ball.regions.table[static_cast<std::size_t>(piece.region)].painted)
+                for (const std::uint64_t word : piece.mask) painted += static_cast<std::uint64_t>(std::popcount(word));
+        const auto count = [&](const char* name) -> std::uint64_t {
+            const std::string full = std::string(name) + "_L" + std::to_string(l);
+            return file.hasGrid(full) ? load<openvdb::BoolGrid>(temp / "grid.vdb", full)->activeVoxelCount() : 0;
+        };
+        EXPECT_EQ(count("painted"), painted);
+        EXPECT_EQ(count("cut"), ball.cut.levels[l]->activeVoxelCount());
+        EXPECT_EQ(count("kept"), ball.kept.levels[l]->activeVoxelCount());
+    }
+}
+
 // Blosc and the metadata are in the file as promised.
 TEST(VdbWrite, MetadataAndCompression) {
     const TempFolder temp;

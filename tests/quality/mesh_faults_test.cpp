@@ -1,0 +1,94 @@
+#include "i2b/quality/mesh_faults.h"
+#include "quality/cell_mesh.h"
+#include <gtest/gtest.h>
+#include <random>
+#include <set>
+
+namespace i2b {
+namespace {
+
+constexpr int edge = 5; // cells
+
+PolyMesh block(std::mt19937& random) {
+    std::uniform_real_distribution<double> off(-0.25, 0.25);
+    std::vector<Vec3> points;
+    std::vector<test::CellLoops> cells;
+    const auto at = [](int x, int y, int z) { return (x * (edge + 1) + y) * (edge + 1) + z; };
+    for (int x = 0; x <= edge; ++x)
+        for (int y = 0; y <= edge; ++y)
+            for (int z = 0; z <= edge; ++z) points.push_back({x + off(random), y + off(random), z + off(random)});
+    for (int x = 0; x < edge; ++x)
+        for (int y = 0; y < edge; ++y)
+            for (int z = 0; z < edge; ++z)
+                cells.push_back(test::hexLoops({at(x, y, z), at(x + 1, y, z), at(x + 1, y + 1, z), at(x, y + 1, z), at(x, y, z + 1),
+                                                at(x + 1, y, z + 1), at(x + 1, y + 1, z + 1), at(x, y + 1, z + 1)}));
+    return test::meshOfCells(std::move(points), cells);
+}
+
+QualityLimits strict() { // so that every kind of fault turns up
+    QualityLimits limits;
+    limits.nonOrthogonality = 15;
+    limits.skewness = 0.3;
+    limits.faceWeight = 0.45;
+    limits.volumeRatio = 0.7;
+    limits.determinant = 0.9;
+    return limits;
+}
+
+// The same faults as the report names under the same limits.
+TEST(MeshFaults, AgreeWithTheReport) {
+    std::mt19937 random(1);
+    const PolyMesh mesh = block(random);
+    const Rows cellFaces = buildCellFaces(mesh);
+    std::int64_t faults = 0, expected = 0;
+    const std::vector<std::int32_t> poor = MeshFaults(mesh, cellFaces, strict()).poorCells(faults);
+    std::set<std::int32_t> cells;
+    const QualityReport report = measureQuality(mesh, strict());
+    for (const char* name : {"nonOrthoFaces", "skewFaces", "lowWeightFaces", "lowVolRatioFaces"}) {
+        const QualityCheck* check = findCheck(report, name);
+        ASSERT_NE(check, nullptr) << name;
+        expected += check->count;
+        for (const std::int32_t f : check->ids) {
+            cells.insert(mesh.owner[static_cast<std::size_t>(f)]);
+            if (f < mesh.internalFaces()) cells.insert(mesh.neighbour[static_cast<std::size_t>(f)]);
+        }
+    }
+    const QualityCheck* low = findCheck(report, "underdeterminedCells");
+    ASSERT_NE(low, nullptr);
+    cells.insert(low->ids.begin(), low->ids.end());
+    EXPECT_EQ(faults, expected + low->count);
+    EXPECT_EQ(poor, std::vector<std::int32_t>(cells.begin(), cells.end()));
+}
+
+// Measured again where points moved, or all anew: the same, whichever cells of the moved points are named.
+TEST(MeshFaults, UpdateIsAsGoodAsAFreshLook) {
+    std::size_t bad = 0;
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        std::mt19937 random(seed);
+        PolyMesh mesh = block(random);
+        const Rows cellFaces = buildCellFaces(mesh);
+        MeshFaults faults(mesh, cellFaces, strict());
+        std::uniform_real_distribution<double> off(-1.2, 1.2);
+        for (int round = 0; round < 5; ++round) {
+            std::vector<std::int32_t> moved, seeds;
+            for (int i = 0; i < 4; ++i) {
+                const auto cell = static_cast<std::int32_t>(random() % static_cast<unsigned>(mesh.cells));
+                const auto face = mesh.face(cellFaces[cell][random() % cellFaces[cell].size()]);
+                moved.push_back(face[random() % face.size()]);
+                seeds.push_back(cell);
+                mesh.points[static_cast<std::size_t>(moved.back())] += Vec3{off(random), off(random), off(random)};
+            }
+            faults.update(moved, seeds);
+            const MeshFaults fresh(mesh, cellFaces, strict());
+            std::int64_t count = 0, freshCount = 0;
+            EXPECT_EQ(faults.badCells(), fresh.badCells());
+            EXPECT_EQ(faults.poorCells(count), fresh.poorCells(freshCount));
+            EXPECT_EQ(count, freshCount);
+        }
+        bad += faults.badCells().size();
+    }
+    EXPECT_GT(bad, 0u);
+}
+
+} // namespace
+} // namespace i2b
