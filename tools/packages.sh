@@ -8,6 +8,8 @@ build_packages=(
   libdeflate-dev libgtest-dev libgmock-dev libbenchmark-dev
 )
 test_packages=(openfoam openfoam-examples python3-openvdb python3-vtk9)
+# Peers that benchmarks/run measures beside ours; built and run only where they are.
+benchmark_packages=(libp4est-dev libopenmpi-dev openmpi-bin)
 
 # Installs those of the named packages that dpkg does not already have; silent and quick when there are none.
 install_packages() {
