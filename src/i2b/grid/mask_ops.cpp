@@ -1,5 +1,7 @@
 #include "i2b/grid/mask_ops.h"
 #include "i2b/core/checksum.h"
+#include "i2b/grid/mask_nodes.h"
+#include "i2b/grid/octree.h"
 
 namespace i2b {
 namespace {
@@ -94,19 +96,21 @@ Mask::Ptr grownBothWays(const Mask& mask, int axis, int n, const Index3& size) {
     return grown;
 }
 
+// Node by node of a; what b has beside it counts for nothing.
 template <class Combine>
 Mask::Ptr combined(const Mask& a, const Mask& b, const Combine& combine) {
-    auto result = std::make_shared<Mask>(a);
-    result = fillLeaves(result, [&] {
-        return [ra = LeafReader(a), rb = LeafReader(b), &combine](const openvdb::Coord& o) mutable {
-            LeafBits x = ra(o);
-            const LeafBits y = rb(o);
+    const std::vector<const MaskNode*> nodes = nodesOf(a);
+    return treeOfNodes(nodes.size(), [&](std::size_t i) {
+        const MaskNode* other = MaskReader(b).probeConstNode<MaskNode>(nodes[i]->origin());
+        NodeBuilder out(nodes[i]->origin());
+        for (auto leaf = nodes[i]->cbeginChildOn(); leaf; ++leaf) {
+            LeafBits x = leafBits(&*leaf);
+            const LeafBits y = leafBits(leafAt(other, leaf.pos()));
             for (std::size_t n = 0; n < 8; ++n) x[n] = combine(x[n], y[n]);
-            return x;
-        };
+            out.add(leaf->origin(), x);
+        }
+        return out.take();
     });
-    pruneEmptyLeaves(*result);
-    return result;
 }
 
 } // namespace
@@ -143,26 +147,7 @@ Mask::Ptr filledBox(const Index3& size) {
 Mask::Ptr parentsOf(const Mask& fine) { return restricted(fine, true); }
 Mask::Ptr evenSamplesOf(const Mask& fine) { return restricted(fine, false); }
 
-Mask::Ptr childrenOf(const Mask& coarse) {
-    auto fine = std::make_shared<Mask>(false);
-    openvdb::tree::ValueAccessor<Mask> touch(*fine);
-    for (const MaskLeaf* leaf : leavesOf(coarse)) {
-        const LeafBits b = leafBits(leaf);
-        const openvdb::Coord& o = leaf->origin();
-        for (int i = 0; i < 8; ++i) {
-            const int x = i >> 2, y = i >> 1 & 1, z = i & 1;
-            if (bits::any(bits::prolong(b, x, y, z))) {
-                touch.touchLeaf(openvdb::Coord(2 * o.x() + 8 * x, 2 * o.y() + 8 * y, 2 * o.z() + 8 * z));
-            }
-        }
-    }
-    return fillLeaves(fine, [&] {
-        return [reader = LeafReader(coarse)](const openvdb::Coord& o) mutable {
-            const openvdb::Coord p(o.x() >> 1, o.y() >> 1, o.z() >> 1);
-            return bits::prolong(reader(leafOrigin(p)), (p.x() & 4) >> 2, (p.y() & 4) >> 2, (p.z() & 4) >> 2);
-        };
-    });
-}
+Mask::Ptr childrenOf(const Mask& coarse) { return childrenLess(coarse, Mask(false)); }
 
 Mask::Ptr cornersOf(const Mask& cells) { return grownUp(*grownUp(*grownUp(cells, 0), 1), 2); }
 
