@@ -141,6 +141,12 @@ void addCoreCell(const Band& band, LatticeMesh::Reader& reader, int level, const
     }
 }
 
+// Edge of a cell along the normal over its smaller edge across.
+double stretch(const Vec3& size, const Vec3& normal) {
+    const int axis = directionOf(normal) / 2;
+    return size[axis] / std::min(size[(axis + 1) % 3], size[(axis + 2) % 3]);
+}
+
 void addPrism(const Band& band, const Front& front, std::size_t f, Pieces& out) {
     std::array<std::int32_t, 8> wall{};
     int n = 0;
@@ -154,7 +160,7 @@ void addPrism(const Band& band, const Front& front, std::size_t f, Pieces& out) 
         out.edges.push_back({b, next, static_cast<float>(h / l1)});
         out.edges.push_back({b, previous, static_cast<float>(h / l2)});
         if (norm2(cross(e1, e2)) < 0.25 * norm2(e1) * norm2(e2)) continue; // hangs on this polygon's edge
-        const double height = prismHeight * std::min(l1, l2);
+        const double height = prismHeight * std::min(l1, l2) * stretch(front.size[static_cast<std::size_t>(b)], cross(e1, e2));
         const auto il1 = static_cast<float>(1 / l1), il2 = static_cast<float>(1 / l2), ih = static_cast<float>(1 / height);
         out.corners.push_back({{frontOf(b), frontOf(next), frontOf(previous), b}, {il1, il2, ih}, 4});
         out.corners.push_back({{b, previous, next, frontOf(b)}, {il2, il1, ih}, 4});
@@ -224,6 +230,7 @@ Band buildBand(const LatticeMesh& mesh, const Front& front, int rings) {
         band.start.push_back({p[0], p[1], p[2]});
     }
     band.h = front.h;
+    for (const Vec3& s : front.size) band.reach.push_back(std::max(s.x, std::max(s.y, s.z)));
     band.outside = front.outside;
     const std::vector<std::int32_t> nodeOf = numberNodes(band, mesh, marks, rings);
     band.frontNode.resize(band.walls);

@@ -42,6 +42,7 @@ struct Band {
     std::size_t movable = 0;              // nodes [0, movable) move; the rest are fixed
     std::vector<Vec3> start;              // m, per node: a valid state
     std::vector<double> h;                // m, per node: edge of the finest cell around
+    std::vector<double> reach;            // m, per wall node: longest edge of the cells around, for what must be found
     std::vector<std::uint8_t> outside;    // per node: sides of the domain box that it lies in
     std::vector<std::int32_t> corePoint;  // per node from walls on: number in the LatticeMesh
     std::vector<std::int32_t> frontNode;  // per wall node: its front node

@@ -34,7 +34,7 @@ Foot footOf(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>
     const Vec3 way = f - x[b];
     const double length = norm(way);
     const Vec3 q = length > 0 ? x[b] + way * std::min(1.0, 0.1 * band.h[b] / length) : x[b];
-    return footAt(index, q, f, 2 * band.h[b]);
+    return footAt(index, q, f, 2 * band.reach[b]);
 }
 
 bool turns(const Foot& a, const Foot& b) {

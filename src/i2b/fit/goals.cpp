@@ -90,7 +90,7 @@ void projectWalls(const Band& band, const SurfaceIndex& index, std::vector<Vec3>
         // Seen from the fluid side: what the way from the front meets first hides what lies behind.
         const SegmentHit hit = index.firstHit(f, q);
         if (hit && band.outside[b] == 0) q = f + (q - f) * hit.t;
-        const ClosestPoint c = closestWithinSides(index, q, band.outside[b], 4 * band.h[b]);
+        const ClosestPoint c = closestWithinSides(index, q, band.outside[b], 4 * band.reach[b]);
         if (c) x[b] = c.point;
     });
 }
@@ -127,7 +127,7 @@ WallTarget wallTarget(const SurfaceIndex& index, const Band& band, std::size_t w
         c = {f + (b - f) * hit.t, 0, hit.triangle};
     } else {
         const Vec3 q = length > 0 ? b + withinSides(f - b, outside) * std::min(1.0, 0.1 * h / length) : b;
-        c = closestWithinSides(index, q, outside, 2 * h);
+        c = closestWithinSides(index, q, outside, 2 * band.reach[wall]);
     }
     if (!c) return target;
     target.found = true;

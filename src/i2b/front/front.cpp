@@ -27,9 +27,32 @@ void collectFaces(const LatticeMesh& mesh, int level, std::size_t node, LatticeM
     });
 }
 
+// Where axes split on their own a vertex' level tells the smallest edge alone: looks at the cells around it.
+void sizesPerAxis(Front& front, const LatticeMesh& mesh) {
+    for (int l = 0; l < mesh.pointLevels(); ++l) {
+        const RankedMask& points = mesh.frontPoints(l);
+        parallelChunks(points.leafCount(), 16, [&](std::size_t begin, std::size_t end, std::size_t) {
+            LatticeMesh::Reader reader(mesh);
+            for (std::size_t i = begin; i < end; ++i) {
+                std::int64_t slot = points.leafFirst(i);
+                const Index3 o = toIndex(points.leaf(i).origin());
+                bits::forEach(leafBits(&points.leaf(i)), [&](int x, int y, int z) {
+                    LevelTriple finest;
+                    reader.cellsAround(l, {o[0] + x, o[1] + y, o[2] + z}, [&](int level, const Index3&) { finest = finerOf(finest, mesh.levelOf(level)); });
+                    const LatticeMesh::FrontPoint& p = mesh.frontPoint(slot++);
+                    for (std::int32_t f = 0; f < vertexPattern(p.pattern).fans; ++f) {
+                        front.size[static_cast<std::size_t>(p.firstFan + f)] = mesh.lattice().cellSize(finest);
+                        front.h[static_cast<std::size_t>(p.firstFan + f)] = mesh.lattice().h(finest);
+                    }
+                });
+            }
+        });
+    }
+}
+
 void addVertices(Front& front, const LatticeMesh& mesh, double thickness) {
     const auto n = static_cast<std::size_t>(mesh.fanCount());
-    front.front.resize(n), front.corePoint.resize(n), front.h.resize(n), front.direction.resize(n), front.outside.resize(n);
+    front.front.resize(n), front.corePoint.resize(n), front.h.resize(n), front.size.resize(n), front.direction.resize(n), front.outside.resize(n);
     for (int l = 0; l < mesh.pointLevels(); ++l) {
         mesh.frontPoints(l).forEach([&](std::int64_t slot, const Index3& v) {
             const LatticeMesh::FrontPoint& p = mesh.frontPoint(slot);
@@ -40,11 +63,13 @@ void addVertices(Front& front, const LatticeMesh& mesh, double thickness) {
                 front.front[i] = mesh.lattice().corner(l, v);
                 front.corePoint[i] = component == 0 ? p.point : p.firstExtra + component - 1;
                 front.h[i] = mesh.lattice().h(l);
+                front.size[i] = mesh.lattice().cellSize(l);
                 front.direction[i] = pattern.direction[f];
                 front.outside[i] = p.outside;
             }
         });
     }
+    if (!mesh.cubes()) sizesPerAxis(front, mesh);
     front.mesh.reserve(n, 2 * n + 16, n + 16);
     for (std::size_t i = 0; i < n; ++i) {
         const Vec3 d{double(front.direction[i][0]), double(front.direction[i][1]), double(front.direction[i][2])};
@@ -103,7 +128,7 @@ void assignParts(Front& front, const SurfaceIndex& index) {
 
 std::string Front::validate() const {
     const std::size_t n = mesh.n_vertices(), m = mesh.n_faces();
-    if (front.size() != n || corePoint.size() != n || h.size() != n || direction.size() != n || outside.size() != n) {
+    if (front.size() != n || corePoint.size() != n || h.size() != n || size.size() != n || direction.size() != n || outside.size() != n) {
         return "arrays per vertex differ in length";
     }
     if (ownerCell.size() != m || part.size() != m || level.size() != m || pieces.size() != m) return "arrays per face differ in length";

@@ -22,7 +22,8 @@ struct Front {
     // Per vertex:
     std::vector<Vec3> front;                       // m, position on the front
     std::vector<std::int32_t> corePoint;           // number of that point in the LatticeMesh; two fans may share it
-    std::vector<double> h;                         // m, edge of the finest cell around
+    std::vector<double> h;                         // m, smallest edge of the cells around
+    std::vector<Vec3> size;                        // m, the same along each axis
     std::vector<std::array<std::int8_t, 3>> direction; // sum of the distinct axis directions of its faces
     std::vector<std::uint8_t> outside;             // bit 2 * axis (+ 1): lies on the low (high) side of the domain box
     // Per face:

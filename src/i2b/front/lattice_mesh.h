@@ -34,6 +34,9 @@ class LatticeMesh {
     int levels() const { return static_cast<int>(cells_.size()); }       // of cells: as in CellGrid
     int pointLevels() const { return static_cast<int>(points_.size()); } // of points: as activeVertices() has them
     const LevelTriple& levelOf(int level) const { return grid_.levels[static_cast<std::size_t>(level)].level; }
+    bool cubes() const { // no cell has levels that differ from axis to axis
+        return std::all_of(grid_.levels.begin(), grid_.levels.end(), [](const CellLevel& l) { return l.level.same(); });
+    }
     std::int64_t cellCount() const { return cellCount_; }
     std::int64_t pointCount() const { return pointCount_ + extraPoints_; } // core points
     std::int64_t fanCount() const { return fanCount_; }
