@@ -1,6 +1,7 @@
 #include "i2b/fit/band.h"
 #include <algorithm>
 #include <atomic>
+#include <tbb/parallel_sort.h>
 
 namespace i2b {
 namespace {
@@ -73,11 +74,23 @@ Marks markBand(const LatticeMesh& mesh, int rings) {
     return marks;
 }
 
-// What one cell contributes.
+using Hanging = std::pair<std::int32_t, std::array<std::int32_t, 4>>; // a node and its parents, -1 filled
+bool sameNode(const Hanging& a, const Hanging& b) { return a.first == b.first; }
+
+// What some cells contribute.
 struct Pieces {
     std::vector<Corner> corners;
     std::vector<BandEdge> edges; // both directions
-    std::vector<std::pair<std::int32_t, std::array<std::int32_t, 4>>> hanging; // parents, -1 filled
+    std::vector<Hanging> hanging;
+
+    // Four cells share an edge: what is alike goes before the pieces are put together.
+    void settle() {
+        std::sort(edges.begin(), edges.end());
+        edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+        edges.shrink_to_fit();
+        std::sort(hanging.begin(), hanging.end());
+        hanging.erase(std::unique(hanging.begin(), hanging.end(), sameNode), hanging.end());
+    }
 };
 
 // A cell's vertices with their neighbours along its edges: six slots, 2 * axis (+ 1 for the positive direction).
@@ -254,16 +267,22 @@ Band buildBand(const LatticeMesh& mesh, const Front& front, int rings) {
                     if (marks.cells[rank++]) addCoreCell(band, reader, l, {o[0] + x, o[1] + y, o[2] + z}, nodeOf, vertices, pieces[before + chunk]);
                 });
             }
+            pieces[before + chunk].settle();
         });
     }
     const std::size_t before = pieces.size(), faces = front.ownerCell.size();
     pieces.resize(before + (faces + 2047) / 2048);
     parallelChunks(faces, 2048, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         for (std::size_t f = begin; f < end; ++f) addPrism(band, front, f, pieces[before + chunk]);
+        pieces[before + chunk].settle();
     });
 
     std::vector<BandEdge> edges;
-    std::vector<std::pair<std::int32_t, std::array<std::int32_t, 4>>> hanging;
+    std::vector<Hanging> hanging;
+    std::size_t cornerCount = 0, edgeCount = 2 * band.walls;
+    for (const Pieces& p : pieces) cornerCount += p.corners.size(), edgeCount += p.edges.size();
+    band.corners.reserve(cornerCount);
+    edges.reserve(edgeCount);
     for (Pieces& p : pieces) {
         band.corners.insert(band.corners.end(), p.corners.begin(), p.corners.end());
         edges.insert(edges.end(), p.edges.begin(), p.edges.end());
@@ -288,13 +307,13 @@ Band buildBand(const LatticeMesh& mesh, const Front& front, int rings) {
         const auto a = static_cast<std::size_t>(e.a), b = static_cast<std::size_t>(e.b);
         if (a >= band.walls && a < band.walls + band.fronts && b >= band.walls + band.fronts) e.weight *= static_cast<float>(prismHeight);
     });
-    std::sort(edges.begin(), edges.end());
+    tbb::parallel_sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     band.edges = rowsOf<BandEdge>(
         band.nodes(), edges.size(), [&](std::size_t i, const auto& put) { put(static_cast<std::size_t>(edges[i].a)); },
         [&](std::size_t i) { return edges[i]; });
     std::sort(hanging.begin(), hanging.end());
-    hanging.erase(std::unique(hanging.begin(), hanging.end(), [](const auto& a, const auto& b) { return a.first == b.first; }), hanging.end());
+    hanging.erase(std::unique(hanging.begin(), hanging.end(), sameNode), hanging.end());
     band.parents.start.assign(band.nodes() + 1, 0);
     for (const auto& [node, parents] : hanging) {
         for (std::int32_t p : parents) band.parents.start[static_cast<std::size_t>(node) + 1] += p >= 0;

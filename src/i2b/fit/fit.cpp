@@ -51,17 +51,20 @@ void store(const Band& band, const std::vector<Vec3>& x, Front& front) {
     }
 }
 
-// The band of a front whose faces were split: the same nodes, other corners. The start positions stay the lattice's.
-Band rebuiltBand(const LatticeMesh& mesh, Front& front, int ringCount, const Band& before) {
+// Makes the band of a front whose faces were split: the same nodes, other corners. The start positions stay the
+// lattice's. Two bands at a time would be the most memory of a run.
+void rebuild(Band& band, const LatticeMesh& mesh, Front& front) {
+    const std::vector<Vec3> start = std::move(band.start);
+    const std::size_t walls = band.walls;
+    band = Band{};
     std::vector<FrontMesh::Point> placed;
-    for (std::size_t v = 0; v < before.walls; ++v) {
+    for (std::size_t v = 0; v < walls; ++v) {
         const FrontMesh::VertexHandle h(static_cast<int>(v));
         placed.push_back(front.mesh.point(h));
-        front.mesh.set_point(h, {before.start[v].x, before.start[v].y, before.start[v].z});
+        front.mesh.set_point(h, {start[v].x, start[v].y, start[v].z});
     }
-    Band band = buildBand(mesh, front, ringCount);
-    for (std::size_t v = 0; v < before.walls; ++v) front.mesh.set_point(FrontMesh::VertexHandle(static_cast<int>(v)), placed[v]);
-    return band;
+    band = buildBand(mesh, front, rings);
+    for (std::size_t v = 0; v < walls; ++v) front.mesh.set_point(FrontMesh::VertexHandle(static_cast<int>(v)), placed[v]);
 }
 
 // Newly snapped nodes, and two rings around them, are worked on too.
@@ -106,7 +109,7 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
         snapToFeatures(band, front, index, features, x, snaps);
         store(band, x, front);
         summary.split = splitAlongFeatures(front, band, index, x, snaps);
-        if (summary.split > 0) band = rebuiltBand(mesh, front, rings, band);
+        if (summary.split > 0) rebuild(band, mesh, front);
         activateSnapped(band, snaps, active);
     }
     pull({1e3, 1e5, 1e6, 1e6});
