@@ -1,5 +1,6 @@
 #include "i2b/core/error.h"
 #include "i2b/program/case_file.h"
+#include "i2b/program/entries.h"
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -21,6 +22,14 @@ Case everything() {
     o.size.min = 1e-7;
     o.size.parts = {{"wheel.*", sameSize(0.05)}, {"fin\\d", {2, 1, 0.5}}};
     o.size.boxes = {{{{-1, -2, -3}, {4, 5, 6.5}}, sameSize(0.25)}};
+    o.size.spheres = {{{1, 2, 3}, 0.5, {0.1, 0.2, 1.0 / 3}}};
+    o.size.cylinders = {{{0, 0, 0}, {1, 0, 0}, 0.25, sameSize(0.125)}, {{0, 1, 0}, {1, 1, 0}, 1, sameSize(0.5)}};
+    o.size.bands = {{"body|wheel{1,2}", 0.2, sameSize(0.03)}};
+    o.size.points = {{{1, 2, -3}, sameSize(1e-3)}};
+    o.size.segments = {{{1, 2, -3}, {4, 5, 6}, sameSize(1e-3)}};
+    o.size.lines = {{{1, 2, -3}, {0, 0, 1}, {1, 2, 3}}};
+    o.size.curvature = 36;
+    o.size.gapCells = 4;
     o.size.bufferCells = 5;
     o.domain.box = Box{{-1.5, 0, 0}, {1, 2, 3}};
     o.domain.flow = Flow::internal;
@@ -33,6 +42,15 @@ Case everything() {
     return c;
 }
 
+template <class T>
+void expectSameItems(const std::vector<T>& a, const std::vector<T>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        const auto same = [&](const auto& entry) { EXPECT_EQ(a[i].*(entry.member), b[i].*(entry.member)); };
+        std::apply([&](const auto&... entry) { (same(entry), ...); }, entriesOf(a[i]));
+    }
+}
+
 // Compared field by field: the text form alone could hide what it leaves out.
 void expectSame(const Options& a, const Options& b) {
     EXPECT_EQ(a.geometry.files, b.geometry.files);
@@ -42,16 +60,16 @@ void expectSame(const Options& a, const Options& b) {
     EXPECT_EQ(a.size.max, b.size.max);
     EXPECT_EQ(a.size.min, b.size.min);
     EXPECT_EQ(a.size.bufferCells, b.size.bufferCells);
-    ASSERT_EQ(a.size.parts.size(), b.size.parts.size());
-    for (std::size_t i = 0; i < a.size.parts.size(); ++i) {
-        EXPECT_EQ(a.size.parts[i].part, b.size.parts[i].part);
-        EXPECT_EQ(a.size.parts[i].size, b.size.parts[i].size);
-    }
-    ASSERT_EQ(a.size.boxes.size(), b.size.boxes.size());
-    for (std::size_t i = 0; i < a.size.boxes.size(); ++i) {
-        EXPECT_EQ(a.size.boxes[i].box, b.size.boxes[i].box);
-        EXPECT_EQ(a.size.boxes[i].size, b.size.boxes[i].size);
-    }
+    EXPECT_EQ(a.size.curvature, b.size.curvature);
+    EXPECT_EQ(a.size.gapCells, b.size.gapCells);
+    expectSameItems(a.size.parts, b.size.parts);
+    expectSameItems(a.size.boxes, b.size.boxes);
+    expectSameItems(a.size.spheres, b.size.spheres);
+    expectSameItems(a.size.cylinders, b.size.cylinders);
+    expectSameItems(a.size.bands, b.size.bands);
+    expectSameItems(a.size.points, b.size.points);
+    expectSameItems(a.size.segments, b.size.segments);
+    expectSameItems(a.size.lines, b.size.lines);
     EXPECT_EQ(a.domain.box, b.domain.box);
     EXPECT_EQ(a.domain.flow, b.domain.flow);
     ASSERT_EQ(a.domain.seeds.size(), b.domain.seeds.size());
@@ -139,6 +157,51 @@ TEST(CaseFile, NamesFileLineAndKey) {
                 AllOf(HasSubstr("exclude"), HasSubstr("car.toml:")));
     EXPECT_THAT(complaint("size = 1\nsize = 2"), HasSubstr("car.toml:2"));
     EXPECT_THAT(complaint("size = \n"), HasSubstr("car.toml:1"));
+}
+
+// Sizes in tables of their own are the same options under shorter names.
+TEST(CaseFile, TakesSizesAsTables) {
+    const Case tables = parseCase("layers = 2\n[size]\nsurface = 0.02\nmax = 0.5\nmin = 0.01\nbuffer-cells = 4\n"
+                                  "curvature = 36\ngap-cells = 3\n"
+                                  "[[size.part]]\npart = 'wheel.*'\nsize = 0.01\n"
+                                  "[[size.part]]\npart = 'fin'\nsize = [0.01, 0.02, 0.01]\n"
+                                  "[[size.box]]\nbox = [0, 0, 0, 1, 1, 1]\nsize = [1, 2, 3]\n"
+                                  "[[size.sphere]]\ncentre = [1, 2, 3]\nradius = 2\nsize = 0.1\n"
+                                  "[[size.cylinder]]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nradius = 0.1\nsize = 0.2\n"
+                                  "[[size.band]]\npart = 'body'\ndistance = 0.2\nsize = 0.03\n"
+                                  "[[size.point]]\nplace = [1, 1, 1]\nsize = 0.1\n"
+                                  "[[size.segment]]\nfrom = [0, 0, 0]\nto = [1, 1, 1]\nsize = 0.1\n"
+                                  "[[size.line]]\nthrough = [0, 0, 0]\ndirection = [1, 1, 1]\nsize = 0.1\n",
+                                  "car.toml");
+    const Case flat = parseCase(
+        "layers = 2\nsize = 0.02\nmax-size = 0.5\nmin-size = 0.01\nbuffer-cells = 4\ncurvature = 36\ngap-cells = 3\n"
+        "part-size = [{ part = 'wheel.*', size = 0.01 }, { part = 'fin', size = [0.01, 0.02, 0.01] }]\n"
+        "box-size = [{ box = [0, 0, 0, 1, 1, 1], size = [1, 2, 3] }]\n"
+        "sphere-size = [{ centre = [1, 2, 3], radius = 2, size = 0.1 }]\n"
+        "cylinder-size = [{ from = [0, 0, 0], to = [1, 0, 0], radius = 0.1, size = 0.2 }]\n"
+        "band-size = [{ part = 'body', distance = 0.2, size = 0.03 }]\n"
+        "point-size = [{ place = [1, 1, 1], size = 0.1 }]\n"
+        "segment-size = [{ from = [0, 0, 0], to = [1, 1, 1], size = 0.1 }]\n"
+        "line-size = [{ through = [0, 0, 0], direction = [1, 1, 1], size = 0.1 }]\n",
+        "car.toml");
+    expectSame(tables.options, flat.options);
+    EXPECT_EQ(tables.options.size.boxes.at(0).size, (Vec3{1, 2, 3}));
+    EXPECT_EQ(tables.lines.at("max-size"), 4);
+    EXPECT_EQ(tables.lines.at("part-size"), 9);
+    expectSame(parseCase(formatCase(tables), "").options, tables.options);
+}
+
+TEST(CaseFile, NamesFileLineAndKeyInTables) {
+    EXPECT_THAT(complaint("[size]\nsurfac = 1"), AllOf(HasSubstr("car.toml:2, key size.surfac"), HasSubstr("write surface")));
+    EXPECT_THAT(complaint("[size]\nsurface = 1\nlayers = 2"), AllOf(HasSubstr("car.toml:3"), HasSubstr("before the first table")));
+    EXPECT_THAT(complaint("max-size = 2\n[size]\nmax = 1"), AllOf(HasSubstr("car.toml:3, key size.max"), HasSubstr("line 1")));
+    EXPECT_THAT(complaint("[size]\nsurface = 1\n[[size.band]]\npart = 'a'\nsize = 1\n"),
+                AllOf(HasSubstr("car.toml:3, key size.band"), HasSubstr("an entry is missing"), HasSubstr("distance")));
+    EXPECT_THAT(complaint("[[size.sphere]]\ncentre = [0, 0, 0]\nradius = 'x'\nsize = 1\n"),
+                AllOf(HasSubstr("car.toml:3, key size.sphere"), HasSubstr("a number")));
+    EXPECT_THAT(complaint("[[size.sphere]]\ncentre = [0, 0, 0]\nradius = 1\nsize = [1, 2]\n"),
+                AllOf(HasSubstr("car.toml:4"), HasSubstr("a list of 3 numbers")));
+    EXPECT_THAT(complaint("[layers]\ncount = 1"), HasSubstr("car.toml:1, key layers"));
 }
 
 // From a file: a missing one is a mistake of the command line, an empty one is an empty case.

@@ -117,6 +117,49 @@ TEST(CommandLine, SetsEveryOption) {
     EXPECT_TRUE(validate(o).empty());
 }
 
+// Places with a size, in one number or three; a part's name before them; nothing behind is swallowed.
+TEST(CommandLine, TakesPlacesWithSizes) {
+    const CommandLine line = parseCommandLine(
+        {"grid", "--sphere-size", "0", "0", "1", "2", "0.1", "a.stl", "--sphere-size=1,1,1,2,0.1,0.2,0.3", "--band-size",
+         "body|fin{1,2}", "0.2", "0.03", "b.stl", "--band-size", "wheel", "0.1", "1", "2", "3", "--cylinder-size", "0",
+         "0", "0", "1", "0", "-1", "0.5", "0.1", "--point-size", "1", "2", "3", "0.5", "--segment-size", "0", "0", "0",
+         "1", "1", "1", "0.2", "--line-size", "0", "0", "0", "1", "0", "0", "1", "2", "3", "--curvature", "36",
+         "--gap-cells", "3", "--box-size", "0", "0", "0", "1", "1", "1", "4", "5", "6", "--part-size", "fin=1,2,3"});
+    const SizeOptions& size = line.given.options.size;
+    EXPECT_THAT(line.given.options.geometry.files, ElementsAre("a.stl", "b.stl"));
+    ASSERT_EQ(size.spheres.size(), 2u);
+    EXPECT_EQ(size.spheres[0].centre, (Vec3{0, 0, 1}));
+    EXPECT_EQ(size.spheres[0].radius, 2);
+    EXPECT_EQ(size.spheres[0].size, sameSize(0.1));
+    EXPECT_EQ(size.spheres[1].size, (Vec3{0.1, 0.2, 0.3}));
+    ASSERT_EQ(size.bands.size(), 2u);
+    EXPECT_EQ(size.bands[0].part, "body|fin{1,2}");
+    EXPECT_EQ(size.bands[0].distance, 0.2);
+    EXPECT_EQ(size.bands[1].size, (Vec3{1, 2, 3}));
+    ASSERT_EQ(size.cylinders.size(), 1u);
+    EXPECT_EQ(size.cylinders[0].to, (Vec3{1, 0, -1}));
+    EXPECT_EQ(size.cylinders[0].radius, 0.5);
+    ASSERT_EQ(size.points.size(), 1u);
+    EXPECT_EQ(size.points[0].place, (Vec3{1, 2, 3}));
+    ASSERT_EQ(size.segments.size(), 1u);
+    ASSERT_EQ(size.lines.size(), 1u);
+    EXPECT_EQ(size.lines[0].size, (Vec3{1, 2, 3}));
+    EXPECT_EQ(size.curvature, 36);
+    EXPECT_EQ(size.gapCells, 3);
+    EXPECT_EQ(size.boxes.at(0).size, (Vec3{4, 5, 6}));
+    EXPECT_EQ(size.parts.at(0).size, (Vec3{1, 2, 3}));
+    EXPECT_THAT(complaint({"mesh", "a.stl", "--sphere-size", "1", "2", "3"}), HasSubstr("3 numbers where 5 are needed"));
+    EXPECT_THAT(complaint({"mesh", "a.stl", "--band-size", "body", "1"}), HasSubstr("1 numbers where 2 are needed"));
+    EXPECT_THAT(complaint({"mesh", "a.stl", "--band-size"}), HasSubstr("--band-size"));
+}
+
+// `regions` writes only where the command line itself says so.
+TEST(CommandLine, KnowsWhetherOutWasGiven) {
+    const CaseOnDisk file("geometry = 'a.stl'\nsize = 1\nout = 'here'\n");
+    EXPECT_FALSE(parseCommandLine({"regions", file.path}).outGiven);
+    EXPECT_TRUE(parseCommandLine({"regions", file.path, "--out", "there"}).outGiven);
+}
+
 // Every setting is an option of the three commands, so that nothing can be said only in a case file.
 TEST(CommandLine, HelpNamesEverySetting) {
     for (const char* command : {"mesh", "grid", "regions"}) {

@@ -59,6 +59,15 @@ TEST(Validate, NamesEachBrokenOption) {
          [](Options& o) {
              o.size.boxes = {{{{0, 0, 0}, {1, 1, 1}}, sameSize(0)}};
          }},
+        {"sphere-size", [](Options& o) { o.size.spheres = {{{0, 0, 0}, 0, sameSize(1)}}; }},
+        {"cylinder-size", [](Options& o) { o.size.cylinders = {{{0, 0, 0}, {0, 0, 0}, 1, sameSize(1)}}; }},
+        {"band-size", [](Options& o) { o.size.bands = {{"a", 0, sameSize(1)}}; }},
+        {"band-size", [](Options& o) { o.size.bands = {{"a(", 1, sameSize(1)}}; }},
+        {"point-size", [](Options& o) { o.size.points = {{{0, 0, 0}, {1, 1, 0}}}; }},
+        {"segment-size", [](Options& o) { o.size.segments = {{{0, 0, 0}, {0, 0, 0}, sameSize(1)}}; }},
+        {"line-size", [](Options& o) { o.size.lines = {{{0, 0, 0}, {0, 0, 0}, sameSize(1)}}; }},
+        {"curvature", [](Options& o) { o.size.curvature = -1; }},
+        {"gap-cells", [](Options& o) { o.size.gapCells = -1; }},
         {"buffer-cells", [](Options& o) { o.size.bufferCells = 0; }},
         {"box",
          [](Options& o) {

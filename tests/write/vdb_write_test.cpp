@@ -203,7 +203,7 @@ TEST(VdbWrite, MetadataAndCompression) {
     const TempFolder temp;
     Ball(1).write(
         temp / "grid.vdb",
-        {.caseName = "ball", .version = "0.1.0", .surfaceSize = 0.5, .minSize = 0.25, .maxSize = 1});
+        {.caseName = "ball", .version = "0.1.0", .surfaceSize = 0.5, .minSize = 0.25, .maxSize = 1, .texts = {{"region0", "volume 2 parts a"}}});
     openvdb::io::File file((temp / "grid.vdb").string());
     file.open(false);
     EXPECT_TRUE(file.compression() & openvdb::io::COMPRESS_BLOSC);
@@ -212,6 +212,7 @@ TEST(VdbWrite, MetadataAndCompression) {
     EXPECT_EQ(meta->metaValue<std::string>("version"), "0.1.0");
     EXPECT_EQ(meta->metaValue<double>("size_surface"), 0.5);
     EXPECT_EQ(meta->metaValue<std::int32_t>("levels"), 2);
+    EXPECT_EQ(meta->metaValue<std::string>("region0"), "volume 2 parts a");
 }
 
 // Debian's pyopenvdb, which knows float, bool and vector grids only, reads every grid.
@@ -220,16 +221,17 @@ TEST(VdbWrite, PyopenvdbReadsAllGrids) {
     if (python(temp.path(), "import pyopenvdb\nprint('here')") != "here\n")
         GTEST_SKIP() << "python3-openvdb is not installed";
     const Ball ball(2);
-    ball.write(temp / "grid.vdb", {.caseName = "ball", .version = "0.1.0"});
+    ball.write(temp / "grid.vdb", {.caseName = "ball", .version = "0.1.0", .texts = {{"region0", "volume 2 parts a"}}});
     const std::string text = python(
         temp.path(), "import pyopenvdb as vdb, json\n"
                      "grids, meta = vdb.readAll('" +
                          (temp / "grid.vdb").string() +
                          "')\n"
-                         "print(json.dumps({'meta': meta['case'], 'grids': {g.name: [type(g).__name__, "
+                         "print(json.dumps({'meta': meta['case'], 'region': meta['region0'], 'grids': {g.name: [type(g).__name__, "
                          "g.activeVoxelCount(), g.gridClass] for g in grids}}))\n");
     const auto json = nlohmann::json::parse(text);
     EXPECT_EQ(json["meta"], "ball");
+    EXPECT_EQ(json["region"], "volume 2 parts a");
     EXPECT_EQ(json["grids"].size(), 9u);
     for (const char* name : {"level", "region", "surface", "distance"})
         EXPECT_EQ(json["grids"][name][0], "FloatGrid") << name;

@@ -12,6 +12,7 @@ struct CommandLine {
     Command command = Command::help;
     std::string text;       // help: what to print
     Case given;             // mesh, grid, regions; inspect and check use its geometry, threads and quiet
+    bool outGiven = false;  // --out is named on the command line itself
     bool writeCase = false; // mesh, grid, regions: print the case file instead of running
     std::string caseFolder; // check: an OpenFOAM case
     std::string sample;     // sample: the name of a built-in geometry; empty: list them

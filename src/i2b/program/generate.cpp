@@ -11,7 +11,9 @@
 #include "i2b/grid/cut.h"
 #include "i2b/layers/layer_stack.h"
 #include "i2b/paint/paint.h"
+#include "i2b/paint/touched_parts.h"
 #include "i2b/quality/repair.h"
+#include "i2b/sizing/automatic.h"
 #include "i2b/sizing/estimate.h"
 #include <fmt/format.h>
 
@@ -53,10 +55,16 @@ std::unique_ptr<GridResult> generateGrid(const Options& options, Context& contex
     r.field = stage(
         context, "size", [&] { return makeSizeField(r.surface, options.size, options.domain); },
         [](const SizeField& f) { return f.lattice.maxLevel + 1; });
-    refuseTooLarge(r.surface, r.field, options.layers.count, !carveCells);
     r.index = stage(
         context, "index", [&] { return std::make_unique<SurfaceIndex>(r.surface); },
         [&](const auto&) { return r.surface.triangles.size(); });
+    refuseTooLarge(r.surface, r.field, options.layers.count, !carveCells);
+    if (options.size.curvature > 0 || options.size.gapCells > 0) {
+        Stage timed(context, "automatic sizes");
+        addAutomaticSizes(r.field, *r.index, options.size, options.geometry.featureAngle);
+        timed.items = r.surface.triangles.size();
+        refuseTooLarge(r.surface, r.field, options.layers.count, !carveCells);
+    }
     r.grid = stage(
         context, "grid",
         [&] {
@@ -70,6 +78,7 @@ std::unique_ptr<GridResult> generateGrid(const Options& options, Context& contex
         context, "paint",
         [&] {
             Regions regions = labelRegions(r.grid, r.cut);
+            findTouchedParts(regions, r.surface, r.field, r.grid, r.cut);
             chooseRegions(regions, r.grid, r.cut, options.domain);
             return regions;
         },

@@ -24,10 +24,12 @@ std::string partNames(const Region& region, const std::vector<ReportPart>& parts
 }
 
 std::string regionLine(const Region& region, const std::vector<ReportPart>& parts) {
-    return fmt::format("{:<3} {:<12} {:>9} cells {:>11.4g} m3{}  --seed {:.6g},{:.6g},{:.6g}  {}\n",
-                       region.painted ? "yes" : "no", region.name, countText(region.cells), region.volume,
-                       region.touchesDomainBox ? "  meets the box" : "", region.seed.x, region.seed.y,
-                       region.seed.z, partNames(region, parts));
+    const Box& b = region.box;
+    return fmt::format("{:<3} {:<12} {:>9} cells {:>11.4g} m3  ({:.4g} {:.4g} {:.4g}) to ({:.4g} {:.4g} {:.4g}){}  "
+                       "--seed {:.6g},{:.6g},{:.6g}  {}\n",
+                       region.painted ? "yes" : "no", region.name, countText(region.cells), region.volume, b.lo.x,
+                       b.lo.y, b.lo.z, b.hi.x, b.hi.y, b.hi.z, region.touchesDomainBox ? "  meets the domain box" : "",
+                       region.seed.x, region.seed.y, region.seed.z, partNames(region, parts));
 }
 
 } // namespace
@@ -44,12 +46,21 @@ std::string fitText(const FitReport& fit) {
                        100 * fit.featureCaptureFraction, fit.featureSamples, 100 * fit.tiltedFaceFraction);
 }
 
+std::string regionRecord(const Region& region, const std::vector<ReportPart>& parts) {
+    std::string text = fmt::format("volume {:.9g} box", region.volume);
+    for (const Vec3& p : {region.box.lo, region.box.hi}) text += fmt::format(" {:.9g} {:.9g} {:.9g}", p.x, p.y, p.z);
+    text += fmt::format(" seed {:.9g} {:.9g} {:.9g} domain-box {} painted {} parts", region.seed.x, region.seed.y,
+                        region.seed.z, region.touchesDomainBox ? "yes" : "no", region.painted ? "yes" : "no");
+    for (const std::int32_t part : region.parts) text += " " + parts.at(static_cast<std::size_t>(part)).name;
+    return text;
+}
+
 std::string regionsText(const Regions& regions, const std::vector<ReportPart>& parts) {
     std::vector<const Region*> bySize;
     for (const Region& region : regions.table) bySize.push_back(&region);
     std::ranges::stable_sort(bySize, std::greater{}, &Region::volume);
     const double least = bySize.empty() ? 0 : negligible * bySize.front()->volume;
-    std::string text = "painted, name, size, seed, parts beside it\n";
+    std::string text = "painted, name, cells, volume, extent in m, seed, parts beside it\n";
     std::size_t small = 0;
     for (const Region* region : bySize) {
         if (region->volume < least && !region->painted)

@@ -66,11 +66,19 @@ int runGrid(const CommandLine& line, Run& run) {
     return 0;
 }
 
+// A look first: files only where the command line itself names a place for them.
 int runRegions(const CommandLine& line, Run& run) {
-    const auto result = generateGrid(line.given.options, run.context, false);
+    const Clock::time_point start = Clock::now();
+    const Options& options = line.given.options;
+    if (line.outGiven) checkWritable(options.output.folder);
+    const auto result = generateGrid(options, run.context, false);
     printNotes(*result, run);
-    const RunReport report = reportOf(*result, line.given.options, run.context);
+    RunReport report = reportOf(*result, options, run.context);
     fmt::print(run.out, "{}", regionsText(result->regions, report.parts));
+    if (!line.outGiven) return 0;
+    writeGridResults(*result, report, options, run.context,
+                     [&](RunReport& r) { completeReport(r, run, start); });
+    if (!run.quiet) fmt::print(run.out, "written to {}\n", options.output.folder);
     return 0;
 }
 

@@ -1,4 +1,5 @@
 #include "i2b/program/write_results.h"
+#include "i2b/program/print.h"
 #include "i2b/core/memory.h"
 #include "i2b/quality/cell_quality.h"
 #include "i2b/write/atomic_folder.h"
@@ -9,6 +10,7 @@
 #include "i2b/write/vtu_write.h"
 #include <algorithm>
 #include <filesystem>
+#include <fmt/format.h>
 
 namespace i2b {
 namespace {
@@ -37,7 +39,8 @@ void writeMeshFiles(const PolyMesh& mesh, const OutputOptions& output, AtomicFol
     if (wants(output, "ply")) writePly(mesh, folder.place("wall.ply"), context);
 }
 
-void writeGridFile(const GridResult& result, const Options& options, AtomicFolder& folder, Context& context) {
+void writeGridFile(const GridResult& result, const RunReport& report, const Options& options, AtomicFolder& folder,
+                   Context& context) {
     if (!wants(options.output, "vdb")) return;
     Stage stage(context, "write grid");
     stage.items = result.grid.cellCount();
@@ -50,6 +53,8 @@ void writeGridFile(const GridResult& result, const Options& options, AtomicFolde
     vdb.surfaceSize = options.size.surface;
     vdb.minSize = result.field.minSize;
     vdb.maxSize = result.field.lattice.h(0);
+    for (const Region& region : result.regions.table)
+        vdb.texts.emplace_back(fmt::format("region{}", region.id), regionRecord(region, report.parts));
     writeVdb(input, folder.place("grid.vdb"), vdb, context);
 }
 
@@ -67,7 +72,7 @@ void writeMeshResults(MeshResult& result, const Options& options, Context& conte
     writeMeshFiles(result.mesh, options.output, folder, context);
     result.mesh = {}; // on the disk by now
     returnFreedMemory();
-    writeGridFile(*result.cartesian, options, folder, context);
+    writeGridFile(*result.cartesian, result.report, options, folder, context);
     writeReportFile(result.report, options.output, folder, complete);
     context.checkCancelled();
     folder.commit();
@@ -76,7 +81,7 @@ void writeMeshResults(MeshResult& result, const Options& options, Context& conte
 void writeGridResults(const GridResult& result, RunReport& report, const Options& options, Context& context,
                       const CompleteReport& complete) {
     AtomicFolder folder(options.output.folder);
-    writeGridFile(result, options, folder, context);
+    writeGridFile(result, report, options, folder, context);
     writeReportFile(report, options.output, folder, complete);
     context.checkCancelled();
     folder.commit();

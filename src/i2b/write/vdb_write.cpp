@@ -171,6 +171,7 @@ openvdb::MetaMap metadata(const VdbInput& input, const VdbWriteOptions& options,
     meta.insertMeta("size_min", openvdb::DoubleMetadata(options.minSize));
     meta.insertMeta("size_max", openvdb::DoubleMetadata(options.maxSize));
     meta.insertMeta("levels", openvdb::Int32Metadata(input.grid.lattice.maxLevel + 1));
+    for (const auto& [name, text] : options.texts) meta.insertMeta(name, openvdb::StringMetadata(text));
     if (!masks.empty()) meta.insertMeta("masks", openvdb::StringMetadata(masks));
     return meta;
 }
