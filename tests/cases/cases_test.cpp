@@ -25,7 +25,7 @@ struct Case {
     const char* options;
 };
 
-const std::array<Case, 7> cases{{
+const std::array<Case, 9> cases{{
     {"Engine2Cyl", nullptr, "shared/engine-2cyl.obj.gz", "--scale 0.001 --size 0.004"},
     {"MotorBike", nullptr, "openfoam/motorBike.obj.gz", "--size 0.02 --box -5 -4 0 15 4 8 --max-size 1"},
     {"DrivAer", nullptr, "shared/drivaer-body.obj.gz shared/drivaer-frontWheels.obj.gz shared/drivaer-rearWheels.obj.gz",
@@ -33,6 +33,11 @@ const std::array<Case, 7> cases{{
     {"DrivAerHalfLayers", nullptr,
      "shared/drivaer-body.obj.gz shared/drivaer-frontWheels.obj.gz shared/drivaer-rearWheels.obj.gz",
      "--size 0.0625 --box -10 0 0 30 5 8 --max-size 1 --layers 3"},
+    {"DrivAerHalfPerAxis", nullptr,
+     "shared/drivaer-body.obj.gz shared/drivaer-frontWheels.obj.gz shared/drivaer-rearWheels.obj.gz",
+     "--size 0.0625 --box -10 0 0 30 5 8 --max-size 1 --box-size 3 0 0 10 1.2 1.4 0.5 0.125 0.0625 "
+     "--box-size -10 0 0 -1 2 0.3 1 0.5 0.0625"},
+    {"MissilePerAxis", "missile", nullptr, "--size 0.04 --part-size '.*=0.04,0.02,0.02' --box-size 0 -1 -1 2 0 1 0.16 0.08 0.04"},
     {"Engine", "engine", nullptr, "--size 0.012"},
     {"EngineJacket", "engine", nullptr, "--size 0.004 --seed 0.152 0.053 0.40"},
     {"Missile", "missile", nullptr, "--size 0.02 --layers 2"},

@@ -244,7 +244,8 @@ void Assembler::cellData(PolyMesh& mesh) const {
     mesh.cellLevel.resize(cells);
     mesh.cellLayer.assign(cells, 0);
     for (int l = 0; l < in_.lattice.levels(); ++l) {
-        in_.lattice.cells(l).forEach([&](std::int64_t rank, const Index3&) { mesh.cellLevel[std::size_t(rank)] = static_cast<std::uint8_t>(l); });
+        const auto finest = static_cast<std::uint8_t>(in_.lattice.levelOf(l).finest());
+        in_.lattice.cells(l).forEach([&](std::int64_t rank, const Index3&) { mesh.cellLevel[std::size_t(rank)] = finest; });
     }
     const bool zoned = !in_.kept.zones.empty();
     if (zoned) {

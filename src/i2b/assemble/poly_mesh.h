@@ -34,7 +34,7 @@ struct PolyMesh {
     std::vector<Patch> patches;
     std::vector<CellZone> zones;
     // Optional data for inspection; empty, or one value each.
-    std::vector<std::uint8_t> cellLevel;      // per cell: lattice level; layer cells carry their column's
+    std::vector<std::uint8_t> cellLevel;      // per cell: lattice level, finest over the axes; layer cells carry their column's
     std::vector<std::uint8_t> cellLayer;      // per cell: 0 core, 1 the layer cell at the wall, 2 the next, ...
     std::vector<std::int32_t> cellRegion;     // per cell: painted region
 

@@ -46,7 +46,7 @@ void requireValid(const std::string& fault, const char* what) {
 
 } // namespace
 
-std::unique_ptr<GridResult> generateGrid(const Options& options, Context& context, bool carveCells) {
+std::unique_ptr<GridResult> generateGrid(const Options& options, Context& context, Road road) {
     auto out = std::make_unique<GridResult>();
     GridResult& r = *out;
     r.surface = stage(
@@ -58,12 +58,12 @@ std::unique_ptr<GridResult> generateGrid(const Options& options, Context& contex
     r.index = stage(
         context, "index", [&] { return std::make_unique<SurfaceIndex>(r.surface); },
         [&](const auto&) { return r.surface.triangles.size(); });
-    refuseTooLarge(r.surface, r.field, options.layers.count, !carveCells);
+    refuseTooLarge(r.surface, r.field, options.layers.count, road != Road::mesh);
     if (options.size.curvature > 0 || options.size.gapCells > 0) {
         Stage timed(context, "automatic sizes");
         addAutomaticSizes(r.field, *r.index, options.size, options.geometry.featureAngle);
         timed.items = r.surface.triangles.size();
-        refuseTooLarge(r.surface, r.field, options.layers.count, !carveCells);
+        refuseTooLarge(r.surface, r.field, options.layers.count, road != Road::mesh);
     }
     r.grid = stage(
         context, "grid",
@@ -83,7 +83,7 @@ std::unique_ptr<GridResult> generateGrid(const Options& options, Context& contex
             return regions;
         },
         [](const Regions& regions) { return regions.table.size(); });
-    if (!carveCells) return out;
+    if (road == Road::regions) return out;
     r.kept = stage(
         context, "carve", [&] { return carve(r.grid, r.cut, r.regions, *r.index, options.fit); },
         [](const KeptCells& k) { return k.cellCount(); });
@@ -92,7 +92,7 @@ std::unique_ptr<GridResult> generateGrid(const Options& options, Context& contex
 
 MeshResult generate(const Options& options, Context& context) {
     MeshResult out;
-    out.cartesian = generateGrid(options, context);
+    out.cartesian = generateGrid(options, context, Road::mesh);
     const GridResult& c = *out.cartesian;
     auto lattice = std::make_unique<LatticeMesh>(c.grid, c.kept);
     Front front = stage(

@@ -31,9 +31,10 @@ struct MeshResult {
     RunReport report; // all but the total time and memory, which the caller knows at its end
 };
 
-// The Cartesian stages. carveCells false: regions are labelled and chosen, nothing is carved (for `regions`,
-// where no region need be choosable).
-std::unique_ptr<GridResult> generateGrid(const Options& options, Context& context, bool carveCells = true);
+// How far the Cartesian stages go: `regions` chooses but carves nothing; `mesh` makes room for the rest of a mesh.
+enum class Road : std::uint8_t { regions, grid, mesh };
+
+std::unique_ptr<GridResult> generateGrid(const Options& options, Context& context, Road road);
 
 // The whole mesh: valid (PolyMesh::validate() is empty, no cell of negative volume, no face of wrong
 // orientation) or an Error that says what, where and what to do.

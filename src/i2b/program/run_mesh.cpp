@@ -54,7 +54,7 @@ int runGrid(const CommandLine& line, Run& run) {
     const Clock::time_point start = Clock::now();
     const Options& options = line.given.options;
     checkWritable(options.output.folder);
-    const auto result = generateGrid(options, run.context);
+    const auto result = generateGrid(options, run.context, Road::grid);
     printNotes(*result, run);
     RunReport report = reportOf(*result, options, run.context);
     writeGridResults(*result, report, options, run.context,
@@ -71,7 +71,7 @@ int runRegions(const CommandLine& line, Run& run) {
     const Clock::time_point start = Clock::now();
     const Options& options = line.given.options;
     if (line.outGiven) checkWritable(options.output.folder);
-    const auto result = generateGrid(options, run.context, false);
+    const auto result = generateGrid(options, run.context, Road::regions);
     printNotes(*result, run);
     RunReport report = reportOf(*result, options, run.context);
     fmt::print(run.out, "{}", regionsText(result->regions, report.parts));
