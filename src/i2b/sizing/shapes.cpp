@@ -118,13 +118,14 @@ Cover coverOf(const Cylinder& c, const Box& box) {
     const AxialFrame frame(c);
     const double pad = padOf(c.from, c.to, box);
     std::array<Axial, 8> corner{};
-    bool all = true;
+    bool all = true, any = false;
     for (int i = 0; i < 8; ++i) {
         Axial& p = corner[static_cast<std::size_t>(i)] = frame(cornerOf(box, i));
-        all = all && p.along >= 0 && p.along <= frame.length && p.u * p.u + p.v * p.v <= c.radius * c.radius;
+        const bool inside = p.along >= 0 && p.along <= frame.length && p.u * p.u + p.v * p.v <= c.radius * c.radius;
+        all = all && inside, any = any || inside;
         p.along += pad; // the slab, a trifle wider
     }
-    if (all) return Cover::all;
+    if (any) return all ? Cover::all : Cover::some;
     const std::vector<Plane2> slice = slabOfBox(corner, frame.length + 2 * pad);
     const double reach = c.radius + pad;
     return !slice.empty() && hullDistance2(slice) <= reach * reach ? Cover::some : Cover::none;

@@ -38,7 +38,7 @@ struct VdbWriteOptions {
     double surfaceSize = 0, minSize = 0, maxSize = 0; // m
     int halfWidth = 3;                                // voxels of the band of `surface` on each side
     int bandLevel = -1; // level of its lattice; -1: the one most of the cut cells have, or a coarser one for room
-    std::vector<std::pair<std::string, std::string>> texts; // further metadata of the file: name, text
+    std::vector<std::pair<std::string, std::string>> texts = {}; // further metadata of the file: name, text
     bool values = true; // false: the cells_L masks alone
     std::uint64_t mostBandCells = 1'000'000;  // of the geometry on that lattice
     std::uint64_t mostValueCells = 50'000'000; // of a grid that level, region, cut and kept are written for
