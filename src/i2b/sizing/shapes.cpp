@@ -135,7 +135,8 @@ Cover coverOf(const PartsBand& b, const Box& box) {
     const double half = 0.5 * norm(box.extent()) * (1 + 1e-12);
     const ClosestPoint near = b.parts->index.closest(box.centre(), b.distance + half);
     if (!near) return Cover::none;
-    return near.distance + half <= b.distance ? Cover::all : Cover::some;
+    const Vec3 far = cwiseMax(box.hi - near.point, near.point - box.lo); // from one point of the parts to the farthest corner
+    return norm2(far) <= b.distance * b.distance ? Cover::all : Cover::some;
 }
 
 Box around(const Vec3& a, const Vec3& b, double radius) {
