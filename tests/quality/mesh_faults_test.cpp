@@ -40,7 +40,8 @@ TEST(MeshFaults, AgreeWithTheReport) {
     std::mt19937 random(1);
     const PolyMesh mesh = block(random);
     const Rows cellFaces = buildCellFaces(mesh);
-    std::int64_t faults = 0, expected = 0;
+    FaultCount faults;
+    std::int64_t expected = 0, severe = 0;
     const std::vector<std::int32_t> poor = MeshFaults(mesh, cellFaces, strict()).poorCells(faults);
     std::set<std::int32_t> cells;
     const QualityReport report = measureQuality(mesh, strict());
@@ -48,6 +49,7 @@ TEST(MeshFaults, AgreeWithTheReport) {
         const QualityCheck* check = findCheck(report, name);
         ASSERT_NE(check, nullptr) << name;
         expected += check->count;
+        if (std::string(name) == "nonOrthoFaces" || std::string(name) == "skewFaces") severe += check->count;
         for (const std::int32_t f : check->ids) {
             cells.insert(mesh.owner[static_cast<std::size_t>(f)]);
             if (f < mesh.internalFaces()) cells.insert(mesh.neighbour[static_cast<std::size_t>(f)]);
@@ -56,7 +58,8 @@ TEST(MeshFaults, AgreeWithTheReport) {
     const QualityCheck* low = findCheck(report, "underdeterminedCells");
     ASSERT_NE(low, nullptr);
     cells.insert(low->ids.begin(), low->ids.end());
-    EXPECT_EQ(faults, expected + low->count);
+    EXPECT_EQ(faults.all, expected + low->count);
+    EXPECT_EQ(faults.severe, severe);
     EXPECT_EQ(poor, std::vector<std::int32_t>(cells.begin(), cells.end()));
 }
 
@@ -80,10 +83,11 @@ TEST(MeshFaults, UpdateIsAsGoodAsAFreshLook) {
             }
             faults.update(moved, seeds);
             const MeshFaults fresh(mesh, cellFaces, strict());
-            std::int64_t count = 0, freshCount = 0;
+            FaultCount count, freshCount;
             EXPECT_EQ(faults.badCells(), fresh.badCells());
             EXPECT_EQ(faults.poorCells(count), fresh.poorCells(freshCount));
-            EXPECT_EQ(count, freshCount);
+            EXPECT_EQ(count.all, freshCount.all);
+            EXPECT_EQ(count.severe, freshCount.severe);
         }
         bad += faults.badCells().size();
     }

@@ -116,8 +116,9 @@ std::vector<std::int32_t> MeshFaults::badCells() const {
     return cells;
 }
 
-std::vector<std::int32_t> MeshFaults::poorCells(std::int64_t& faults) const {
+std::vector<std::int32_t> MeshFaults::poorCells(FaultCount& faults, bool severeOnly) const {
     constexpr std::array<std::uint8_t, 4> ofFaces{nonOrthogonal, skew, lowWeight, lowRatio};
+    constexpr Index severeKinds = 2;
     std::array<Index, 4> found{};
     Index determinants = 0;
     std::vector<std::int32_t> cells;
@@ -125,15 +126,16 @@ std::vector<std::int32_t> MeshFaults::poorCells(std::int64_t& faults) const {
         if (faceFlags_[f] == 0) continue;
         bool named = false;
         for (Index k = 0; k < ofFaces.size(); ++k)
-            if (faceFlags_[f] & ofFaces[k]) named |= found[k]++ < Tally::idLimit;
+            if (faceFlags_[f] & ofFaces[k]) named |= found[k]++ < Tally::idLimit && (k < severeKinds || !severeOnly);
         if (!named) continue;
         cells.push_back(mesh_.owner[f]);
         if (f < mesh_.neighbour.size()) cells.push_back(mesh_.neighbour[f]);
     }
     for (Index c = 0; c < cellFlags_.size(); ++c)
-        if ((cellFlags_[c] & lowDeterminant) && determinants++ < Tally::idLimit) cells.push_back(static_cast<std::int32_t>(c));
-    faults = static_cast<std::int64_t>(determinants);
-    for (const Index n : found) faults += static_cast<std::int64_t>(n);
+        if ((cellFlags_[c] & lowDeterminant) && determinants++ < Tally::idLimit && !severeOnly) cells.push_back(static_cast<std::int32_t>(c));
+    faults.severe = static_cast<std::int64_t>(found[0] + found[1]);
+    faults.all = static_cast<std::int64_t>(determinants);
+    for (const Index n : found) faults.all += static_cast<std::int64_t>(n);
     std::sort(cells.begin(), cells.end());
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
     return cells;

@@ -6,6 +6,13 @@
 
 namespace i2b {
 
+// Fewer severe faults are better, then fewer of any kind.
+struct FaultCount {
+    std::int64_t severe = 0; // faces over the limits of non-orthogonality or skewness, which spoil a solution first
+    std::int64_t all = 0;
+    friend auto operator<=>(const FaultCount&, const FaultCount&) = default;
+};
+
 class MeshFaults {
   public:
     // Keeps references. limits: those of orthogonality, skewness, weight, volume ratio and determinant count.
@@ -17,8 +24,8 @@ class MeshFaults {
     // Cells without a positive volume, or with a face pyramid that points the wrong way or is next to nothing.
     std::vector<std::int32_t> badCells() const;
     // Cells at both sides of the faces over the limits and cells over theirs: of each kind of fault those that come
-    // first, as many as a report names. faults: how many there are.
-    std::vector<std::int32_t> poorCells(std::int64_t& faults) const;
+    // first, as many as a report names. severeOnly: those of non-orthogonal and skew faces.
+    std::vector<std::int32_t> poorCells(FaultCount& faults, bool severeOnly = false) const;
 
   private:
     enum CellFlag : std::uint8_t { bad = 1, lowDeterminant = 2 };

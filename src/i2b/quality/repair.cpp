@@ -197,8 +197,8 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, c
     MeshFaults faults(mesh, cellFaces, strictLimits());
     std::vector<std::int32_t> bad = faults.badCells();
     summary.badCells = static_cast<std::int64_t>(bad.size());
-    std::vector<std::int32_t> poor = bad.empty() ? faults.poorCells(summary.poorFaces) : bad;
-    if (poor.empty()) return summary;
+    FaultCount least;
+    if (bad.empty() && faults.poorCells(least).empty()) return summary;
     Nodes nodes(front, lattice, layers, startThickness);
     Retreat retreat(mesh, cellFaces, faults, nodes);
     const auto makeValid = [&] {
@@ -207,27 +207,32 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, c
             bad = faults.badCells();
         }
     };
-    if (!bad.empty()) {
-        makeValid();
-        poor = faults.poorCells(summary.poorFaces);
-    }
-    // Retreat for quality as long as it helps; the best state counts.
-    summary.poorRemaining = summary.poorFaces;
+    makeValid();
+    faults.poorCells(least);
+    summary.poorFaces = least.all;
     std::vector<float> best = nodes.beta;
-    for (int round = 0; !poor.empty() && bad.empty() && round < qualityRounds; ++round, ++summary.rounds) {
-        retreat.step(poor, float(qualityStep));
-        bad = faults.badCells();
-        makeValid();
-        std::int64_t count = 0;
-        poor = faults.poorCells(count);
-        if (!bad.empty() || count >= summary.poorRemaining) continue;
-        summary.poorRemaining = count;
-        best = nodes.beta;
-    }
-    if (best != nodes.beta) {
+    const auto returnToBest = [&] {
+        if (best == nodes.beta) return;
         retreat.restore(best);
         bad = faults.badCells();
+    };
+    // Retreat for quality as long as it helps; the best state counts. Severe faults first: what mends them may leave
+    // layers thin beside a large cell, which is the lesser evil.
+    for (const bool severeOnly : {true, false}) {
+        FaultCount count;
+        std::vector<std::int32_t> poor = faults.poorCells(count, severeOnly);
+        for (int round = 0; !poor.empty() && bad.empty() && round < qualityRounds; ++round, ++summary.rounds) {
+            retreat.step(poor, float(qualityStep));
+            bad = faults.badCells();
+            makeValid();
+            poor = faults.poorCells(count, severeOnly);
+            if (!bad.empty() || !(count < least)) continue;
+            least = count;
+            best = nodes.beta;
+        }
+        returnToBest();
     }
+    summary.poorRemaining = least.all;
     nodes.store(front);
     for (float b : nodes.beta) summary.retracted += b < 1;
     summary.remaining = static_cast<std::int64_t>(bad.size());
