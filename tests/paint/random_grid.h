@@ -29,10 +29,12 @@ inline CellGrid randomGrid(unsigned seed, const Index3& count, int levels, int b
                     c[a] = static_cast<std::int32_t>(random() % static_cast<unsigned>(n[a]));
                 mask->setValueOn(toCoord(c));
             }
-            wanted.axis[axis].push_back(mask);
+            wanted.walls[axis].push_back(mask);
+            wanted.spaces[axis].push_back(std::make_shared<Mask>(false));
         }
     }
-    if (!perAxis) wanted.axis[1] = wanted.axis[2] = wanted.axis[0];
+    if (perAxis) return buildCellGrid(field, wanted);
+    for (auto* lists : {&wanted.walls, &wanted.spaces}) (*lists)[1] = (*lists)[2] = (*lists)[0];
     return buildCellGrid(field, wanted);
 }
 

@@ -1,5 +1,6 @@
 #include "i2b/grid/build.h"
 #include "i2b/core/checksum.h"
+#include "i2b/grid/mask_ops.h"
 #include "i2b/grid/octree.h"
 #include "i2b/grid/resample.h"
 #include "i2b/grid/splits.h"
@@ -18,13 +19,14 @@ Mask::Ptr splitAbove(const Mask& wanted, const Mask& split, int buffer, const La
 }
 
 // All axes together: an octree, one mask a level.
-std::vector<CellLevel> octreeLeaves(const SizeField& field, const std::vector<Mask::Ptr>& wanted) {
+std::vector<CellLevel> octreeLeaves(const SizeField& field, const std::vector<Mask::Ptr>& walls, const std::vector<Mask::Ptr>& spaces) {
     const Lattice& lattice = field.lattice;
     const auto levels = static_cast<std::size_t>(lattice.maxLevel) + 1;
     std::vector<Mask::Ptr> split(levels); // cells of level l that are split
     split[levels - 1] = std::make_shared<Mask>(false);
     for (std::size_t l = levels - 1; l-- > 0;) {
-        split[l] = splitAbove(*wanted[l + 1], *split[l + 1], field.bufferCells, lattice, static_cast<int>(l));
+        split[l] = splitAbove(*walls[l + 1], *split[l + 1], field.bufferCells, lattice, static_cast<int>(l));
+        if (!isEmpty(*spaces[l + 1])) split[l]->topologyUnion(*parentsOf(*spaces[l + 1]));
     }
     std::vector<CellLevel> leaves;
     for (std::size_t l = 0; l < levels; ++l) {
@@ -41,7 +43,7 @@ CellGrid buildCellGrid(const SizeField& field, const WantedCells& wanted) {
     CellGrid grid;
     grid.lattice = field.lattice;
     grid.levels = wanted.perAxis ? leavesOfSplits(field.lattice, settleSplits(field, wanted))
-                                 : octreeLeaves(field, wanted.axis[0]);
+                                 : octreeLeaves(field, wanted.walls[0], wanted.spaces[0]);
     return grid;
 }
 

@@ -40,9 +40,10 @@ void grade(AxisSplits& splits, const SizeField& field, const WantedCells& wanted
     for (std::size_t a = 0; a < 3; ++a) {
         std::vector<Mask::Ptr>& rounds = splits.axis[a];
         for (std::size_t l = rounds.size() - 1; l-- > 0;) {
-            const Mask::Ptr below = unionOf(*wanted.axis[a][l + 1], *rounds[l + 1]);
+            const Mask::Ptr below = unionOf(*wanted.walls[a][l + 1], *rounds[l + 1]);
             const Index3 size = field.lattice.cells(static_cast<int>(l) + 1);
             rounds[l] = unionOf(*rounds[l], *parentsOf(*dilated(*below, field.bufferCells, size)));
+            rounds[l]->topologyUnion(*parentsOf(*wanted.spaces[a][l + 1]));
         }
     }
 }

@@ -6,41 +6,46 @@
 namespace i2b {
 namespace {
 
+using Lists = std::array<std::vector<Mask::Ptr>, 3>;
+
 class Collector {
   public:
     Collector(const Lattice& lattice, bool perAxis) {
         wanted_.perAxis = perAxis;
-        for (std::size_t a = 0; a < 3; ++a) {
-            for (int l = 0; l <= lattice.maxLevel; ++l) wanted_.axis[a].push_back(std::make_shared<Mask>(false));
-        }
-    }
-
-    void add(const Mask& cells, const LevelTriple& level) {
-        for (std::size_t a = 0; a < axes(); ++a) {
-            if (level.same()) {
-                wanted_.axis[a][level.x]->topologyUnion(cells);
-            } else {
-                addOne(a, level[a], overlapping(cells, level, allAxes(level[a])));
+        for (Lists* lists : {&wanted_.walls, &wanted_.spaces}) {
+            for (auto& list : *lists) {
+                for (int l = 0; l <= lattice.maxLevel; ++l) list.push_back(std::make_shared<Mask>(false));
             }
         }
     }
-    // As add(), and takes the mask's nodes where it can.
-    void take(Mask::Ptr cells, const LevelTriple& level) {
+
+    void addWalls(const Mask& cells, const LevelTriple& level) { add(wanted_.walls, cells, level); }
+    // Takes the mask's nodes where it can.
+    void takeSpace(Mask::Ptr cells, const LevelTriple& level) {
         if (level.same() && !wanted_.perAxis) {
-            addOne(0, level.x, std::move(cells));
+            join(wanted_.spaces[0][level.x], std::move(cells));
         } else {
-            add(*cells, level);
+            add(wanted_.spaces, *cells, level);
         }
     }
     WantedCells result() {
-        if (!wanted_.perAxis) wanted_.axis[1] = wanted_.axis[2] = wanted_.axis[0];
+        for (Lists* lists : {&wanted_.walls, &wanted_.spaces}) {
+            if (!wanted_.perAxis) (*lists)[1] = (*lists)[2] = (*lists)[0];
+        }
         return std::move(wanted_);
     }
 
   private:
-    std::size_t axes() const { return wanted_.perAxis ? 3 : 1; }
-    void addOne(std::size_t axis, int level, Mask::Ptr cells) {
-        Mask::Ptr& all = wanted_.axis[axis][static_cast<std::size_t>(level)];
+    void add(Lists& lists, const Mask& cells, const LevelTriple& level) const {
+        for (std::size_t a = 0; a < (wanted_.perAxis ? 3u : 1u); ++a) {
+            if (level.same()) {
+                lists[a][level.x]->topologyUnion(cells);
+            } else {
+                join(lists[a][static_cast<std::size_t>(level[a])], overlapping(cells, level, allAxes(level[a])));
+            }
+        }
+    }
+    static void join(Mask::Ptr& all, Mask::Ptr cells) {
         if (isEmpty(*all)) {
             all = std::move(cells);
         } else {
@@ -69,10 +74,10 @@ bool differs(const SizeField& field, const std::vector<CellLevel>& atTarget) {
 WantedCells wantedCells(const SizeField& field, const std::vector<CellLevel>& atTarget) {
     const Lattice& lattice = field.lattice;
     Collector all(lattice, differs(field, atTarget));
-    for (const LevelBox& rule : field.boxes) all.take(cellsOf(rule.box, lattice, rule.level), rule.level);
-    for (const LevelShape& rule : field.shapes) all.take(cellsOf(rule.shape, lattice, rule.level), rule.level);
-    for (const LevelCells& gap : field.gaps) all.take(maskOf(gap.cells), gap.level);
-    for (const CellLevel& cut : atTarget) all.add(*cut.cells, cut.level);
+    for (const LevelBox& rule : field.boxes) all.takeSpace(cellsOf(rule.box, lattice, rule.level), rule.level);
+    for (const LevelShape& rule : field.shapes) all.takeSpace(cellsOf(rule.shape, lattice, rule.level), rule.level);
+    for (const LevelCells& gap : field.gaps) all.addWalls(*maskOf(gap.cells), gap.level);
+    for (const CellLevel& cut : atTarget) all.addWalls(*cut.cells, cut.level);
     return all.result();
 }
 

@@ -6,10 +6,12 @@
 
 namespace i2b {
 
-// axis[a][l]: cells of level l (the same on all axes) inside which axis a must be at level l or finer. Where nothing
-// asks for different sizes along the axes, all three lists hold the same masks and perAxis is false.
+// Both lists: [axis][level] are cells of the level (the same on all axes) inside which the axis must be at that level or
+// finer. walls are cut cells, and gaps, which get a buffer of their own level around them; spaces (boxes, bands and the
+// like) end where they end, with the buffers of the coarser levels outside. Where nothing asks for different sizes along
+// the axes, the lists of all three hold the same masks and perAxis is false.
 struct WantedCells {
-    std::array<std::vector<Mask::Ptr>, 3> axis;
+    std::array<std::vector<Mask::Ptr>, 3> walls, spaces;
     bool perAxis = false;
 };
 
