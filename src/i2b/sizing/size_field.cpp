@@ -7,6 +7,7 @@ namespace i2b {
 namespace {
 
 constexpr double slack = 1e-9;   // relative: a size that divides the box exactly is taken as such
+constexpr int mostBits = 28;     // of a cell's coordinate: places in quarters of its edges must fit into 32 bits
 constexpr int highestLevel = 20;
 
 // The largest surface * 2^k that does not exceed limit.
@@ -123,9 +124,9 @@ void settleLevels(SizeField& field) {
     for (const LevelCells& gap : field.gaps) raise(gap.level);
     field.minSize = lattice.h(lattice.maxLevel);
     for (std::int32_t n : lattice.count) {
-        if (std::ldexp(n, lattice.maxLevel) > double(1 << 30)) {
+        if (std::ldexp(n, lattice.maxLevel) > double(1 << mostBits)) {
             throw Error(ErrorKind::input, fmt::format("cells of {:g} m are too small for the domain", field.minSize),
-                        "more than 2^30 along an axis", "give a larger --size or a smaller --box");
+                        fmt::format("more than 2^{} along an axis", mostBits), "give a larger --size or a smaller --box");
         }
     }
 }

@@ -45,7 +45,7 @@ struct SizeField {
     std::string validate() const;
 };
 
-// Throws Error where no lattice fits the request (empty geometry, box that misses it, more than 2^30 cells along an
+// Throws Error where no lattice fits the request (empty geometry, box that misses it, more than 2^28 cells along an
 // axis).
 SizeField makeSizeField(const Surface& surface, const SizeOptions& size, const DomainOptions& domain);
 
