@@ -1,4 +1,5 @@
 #include "i2b/grid/splits.h"
+#include "i2b/grid/octree.h"
 #include "i2b/grid/resample.h"
 
 namespace i2b {
@@ -64,8 +65,8 @@ bool makeWhole(AxisSplits& splits, int rounds) {
 
 // Cells that stop at level l along the axis.
 Mask::Ptr stopping(const Lattice& lattice, const AxisSplits& splits, std::size_t axis, std::size_t l) {
-    const Mask::Ptr all = l == 0 ? filledBox(lattice.count) : childrenOf(*splits.axis[axis][l - 1]);
-    return differenceOf(*all, *splits.axis[axis][l]);
+    const std::vector<Mask::Ptr>& rounds = splits.axis[axis];
+    return l == 0 ? boxLess(lattice.count, *rounds[0]) : childrenLess(*rounds[l - 1], *rounds[l]);
 }
 
 // What two sets have in common, on the level that takes each axis from where it is finer. Each is a union of leaf
