@@ -137,13 +137,6 @@ void pruneEmptyLeaves(Mask& mask) {
     for (const openvdb::Coord& o : empty) mask.addTile(1, o, false, false);
 }
 
-Mask::Ptr filledBox(const Index3& size) {
-    auto mask = std::make_shared<Mask>(false);
-    mask->denseFill(openvdb::CoordBBox({0, 0, 0}, {size[0] - 1, size[1] - 1, size[2] - 1}), true, true);
-    mask->voxelizeActiveTiles();
-    return mask;
-}
-
 Mask::Ptr parentsOf(const Mask& fine) { return restricted(fine, true); }
 Mask::Ptr evenSamplesOf(const Mask& fine) { return restricted(fine, false); }
 

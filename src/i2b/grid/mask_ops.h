@@ -41,7 +41,6 @@ Mask::Ptr fillLeaves(Mask::Ptr topology, const Fill& fill) {
 }
 void pruneEmptyLeaves(Mask& mask);
 
-Mask::Ptr filledBox(const Index3& size);                 // all cells of [0, size)
 Mask::Ptr parentsOf(const Mask& fine);                   // parents of any cell
 Mask::Ptr evenSamplesOf(const Mask& fine);               // coarse v where fine 2v is set (vertices)
 Mask::Ptr childrenOf(const Mask& coarse);
