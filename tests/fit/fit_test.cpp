@@ -70,9 +70,9 @@ class Fit : public testing::TestWithParam<unsigned> {};
 TEST_P(Fit, StartIsValidAndBlendStaysSo) {
     forSettings(GetParam(), [](const Setting& s, unsigned seed) {
         EXPECT_EQ(inverted(s.band, s.band.start), 0u) << "seed " << seed;
-        const std::vector<Vec3> goal = goalPositions(s.band, *s.painted.index, 4);
+        const std::vector<Vec3> goal = goalPositions(s.band, *s.painted.index, s.band.start, 4);
         std::vector<Vec3> x;
-        const std::vector<double> alpha = blend(s.band, goal, x);
+        const std::vector<double> alpha = blend(s.band, s.band.start, goal, x);
         EXPECT_EQ(inverted(s.band, x), 0u) << "seed " << seed;
         for (std::size_t n = 0; n < s.band.movable; ++n) {
             ASSERT_TRUE(alpha[n] >= 0 && alpha[n] <= 1);
@@ -85,7 +85,7 @@ TEST_P(Fit, StartIsValidAndBlendStaysSo) {
             const auto i = static_cast<double>(n);
             wild[n] += Vec3{std::sin(i), std::cos(3 * i), std::sin(7 * i)} * s.band.h[n];
         }
-        blend(s.band, wild, x);
+        blend(s.band, s.band.start, wild, x);
         EXPECT_EQ(inverted(s.band, x), 0u) << "seed " << seed;
     });
 }

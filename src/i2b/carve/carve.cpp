@@ -1,5 +1,6 @@
 #include "i2b/carve/carve.h"
-#include "i2b/carve/vertices.h"
+#include "i2b/carve/extrudable.h"
+#include "i2b/carve/passages.h"
 #include "i2b/core/checksum.h"
 #include "i2b/core/error.h"
 #include "i2b/grid/ranked_mask.h"
@@ -13,17 +14,6 @@ namespace {
 void sortUnique(std::vector<Place>& places) {
     std::sort(places.begin(), places.end());
     places.erase(std::unique(places.begin(), places.end()), places.end());
-}
-
-std::vector<Place> placesOf(const std::vector<Mask::Ptr>& masks) {
-    std::vector<Place> places;
-    for (std::size_t l = 0; l < masks.size(); ++l) {
-        const RankedMask ranked(masks[l]);
-        const std::size_t start = places.size();
-        places.resize(start + static_cast<std::size_t>(ranked.size()));
-        ranked.forEach([&](std::int64_t rank, const Index3& c) { places[start + std::size_t(rank)] = {int(l), c}; });
-    }
-    return places;
 }
 
 // Every place asks for cells to go; the list is the same whatever the threads did.
@@ -73,84 +63,6 @@ std::vector<Place> tooClose(const CellGrid& grid, const CutCells& cut, const std
     });
 }
 
-// The nearest to the geometry of the octants' cells that take() accepts.
-template <class Take>
-void pickNearest(const VertexView& view, const CellGrid& grid, const SurfaceIndex& index, const Take& take,
-                 std::vector<Place>& out) {
-    double best = std::numeric_limits<double>::infinity();
-    int choice = -1;
-    for (int o = 0; o < 8; ++o) {
-        const Octant& octant = view.octants[std::size_t(o)];
-        if (!octant.kept || octant.level < 0 || !take(o)) continue;
-        const double d = index.closest(grid.lattice.cellBox(grid.levels[std::size_t(octant.level)].level, octant.cell).centre()).distance;
-        if (d < best) best = d, choice = o;
-    }
-    if (choice >= 0) out.push_back({view.octants[std::size_t(choice)].level, view.octants[std::size_t(choice)].cell});
-}
-
-// Where the lattice edge that leaves a vertex ends: at the nearest far end of the cells around it, each of which has
-// it for an edge, since kept and removed ones alternate.
-FinePoint endOfEdge(const Place& v, const VertexView& view, std::size_t axis, int side, const CellGrid& grid,
-                    const VertexLookup& lookup) {
-    const FinePoint start = lookup.fine(v);
-    std::int64_t length = std::numeric_limits<std::int64_t>::max();
-    for (int o = 0; o < 8; ++o) {
-        const Octant& octant = view.octants[std::size_t(o)];
-        if ((o >> axis & 1) != side || octant.level < 0) continue;
-        Index3 far = octant.cell;
-        far[axis] += side;
-        const FinePoint end = lookup.fine(grid.levels[std::size_t(octant.level)].level, far);
-        length = std::min(length, std::abs(end[axis] - start[axis]));
-    }
-    FinePoint end = start;
-    end[axis] += side ? length : -length;
-    return end;
-}
-
-// An edge at which kept and removed cells alternate must come apart in the same way at both of its ends.
-void judgeEdges(const Place& v, const VertexView& view, const VertexPattern& pattern, const CellGrid& grid,
-                VertexLookup& lookup, const SurfaceIndex& index, std::vector<Place>& out) {
-    for (int e = 0; e < 6; ++e) {
-        const int axis = e >> 1, side = e & 1;
-        if (pattern.edge[std::size_t(e)] == Alternation::none || view.outside >> e & 1) continue;
-        const std::optional<Place> end = lookup.vertexAt(endOfEdge(v, view, std::size_t(axis), side, grid, lookup));
-        if (!end) continue;
-        const VertexPattern& other = vertexPattern(lookup.view(*end).kept);
-        if (other.edge[std::size_t(e ^ 1)] == pattern.edge[std::size_t(e)]) continue;
-        pickNearest(view, grid, index, [&](int o) { return (o >> axis & 1) == side; }, out);
-    }
-}
-
-std::vector<Place> notExtrudable(const std::vector<Place>& vertices, const CellGrid& grid,
-                                 const std::vector<Mask::Ptr>& kept, const SurfaceIndex& index) {
-    return collect(vertices, grid, kept, [&](const Place& v, VertexLookup& lookup, std::vector<Place>& out) {
-        const VertexView view = lookup.view(v);
-        const VertexPattern& pattern = vertexPattern(view.kept);
-        if (pattern.fans == 0) return;
-        for (std::size_t f = 0; f < pattern.fans; ++f) {
-            if (pattern.good[f]) continue;
-            pickNearest(view, grid, index,
-                        [&](int o) { return pattern.component[std::size_t(o)] == pattern.fanComponent[f]; }, out);
-        }
-        judgeEdges(v, view, pattern, grid, lookup, index, out);
-    });
-}
-
-// Vertices on the closed cells, each on its own level.
-std::vector<Place> verticesOf(const std::vector<Place>& cells, const CellGrid& grid, const std::vector<Mask::Ptr>& kept) {
-    std::vector<Place> vertices;
-    VertexLookup lookup(grid, kept);
-    for (const Place& cell : cells) {
-        const LevelTriple half = halvedLevel(grid.levels[std::size_t(cell.level)].level);
-        for (int i = 0; i < 27; ++i) {
-            const Index3 p{2 * cell.at[0] + i % 3, 2 * cell.at[1] + i / 3 % 3, 2 * cell.at[2] + i / 9};
-            if (const std::optional<Place> v = lookup.vertexAt(lookup.fine(half, p))) vertices.push_back(*v);
-        }
-    }
-    sortUnique(vertices);
-    return vertices;
-}
-
 // Keeps the largest connected part of each kept region; gives the number of cells dropped.
 std::uint64_t dropIslands(std::vector<Mask::Ptr>& kept, const CellGrid& grid) {
     CutCells closed;
@@ -167,25 +79,35 @@ std::uint64_t dropIslands(std::vector<Mask::Ptr>& kept, const CellGrid& grid) {
 
 struct Carved {
     std::vector<Mask::Ptr> cells;
-    std::uint64_t clearance = 0, front = 0, islands = 0;
+    std::uint64_t clearance = 0, given = 0, front = 0, islands = 0;
 };
 
-Carved carveRegion(const CellGrid& grid, const CutCells& cut, const Regions& regions, const Region& region,
-                   const SurfaceIndex& index, double clearance) {
+void give(std::vector<Mask::Ptr>& kept, const std::vector<Place>& cells) {
+    for (const Place& cell : cells) kept[std::size_t(cell.level)]->setValueOn(toCoord(cell.at));
+}
+
+// taken: kept cells of the regions before, by level; none for the first.
+Carved carveRegion(const CellGrid& grid, const CutCells& cut, const Regions& regions, const Region& region, const SurfaceIndex& index,
+                   const FitOptions& options, const std::vector<Mask::Ptr>& taken) {
     Carved result;
     result.cells = regions.cellsOf(region.id);
-    const std::vector<Place> close = tooClose(grid, cut, result.cells, index, clearance);
+    const std::vector<Place> close = tooClose(grid, cut, result.cells, index, options.clearance);
     removeCells(result.cells, close);
     result.clearance = close.size();
     result.islands = dropIslands(result.cells, grid);
-    std::vector<Place> vertices = placesOf(frontVertices(grid, result.cells, activeVertices(grid, result.cells)));
-    while (!vertices.empty()) {
-        const std::vector<Place> bad = notExtrudable(vertices, grid, result.cells, index);
-        removeCells(result.cells, bad);
-        result.front += bad.size();
-        // A cell's removal changes the vertices around it, and what their neighbours' edges see at the other end.
-        std::vector<Place> around = verticesOf(bad, grid, result.cells);
-        vertices = std::move(around);
+    if (options.passages) {
+        const Room room(grid, cut, regions, region, result.cells, taken, index);
+        for (int round = 0; round < passageRounds; ++round) {
+            const std::vector<Place> given = passageCells(room);
+            give(result.cells, given);
+            result.given += given.size();
+            if (given.empty()) break;
+        }
+        const ShapingSummary shaped = makeExtrudable(result.cells, grid, index, &room);
+        result.given += shaped.added;
+        result.front = shaped.removed;
+    } else {
+        result.front = makeExtrudable(result.cells, grid, index, nullptr).removed;
     }
     for (Mask::Ptr& mask : result.cells) pruneEmptyLeaves(*mask);
     result.islands += dropIslands(result.cells, grid);
@@ -202,10 +124,16 @@ Carved carveRegion(const CellGrid& grid, const CutCells& cut, const Regions& reg
 KeptCells carve(const CellGrid& grid, const CutCells& cut, const Regions& regions, const SurfaceIndex& index,
                 const FitOptions& options) {
     KeptCells kept;
+    const auto painted = std::count_if(regions.table.begin(), regions.table.end(), [](const Region& r) { return r.painted; });
+    const bool several = painted > 1;
+    std::vector<Mask::Ptr> taken;
+    for (std::size_t l = 0; l < grid.levels.size() && several; ++l) taken.push_back(std::make_shared<Mask>(false));
     for (const Region& region : regions.table) {
         if (!region.painted) continue;
-        Carved carved = carveRegion(grid, cut, regions, region, index, options.clearance);
+        Carved carved = carveRegion(grid, cut, regions, region, index, options, taken);
+        for (std::size_t l = 0; l < grid.levels.size() && several; ++l) taken[l]->topologyUnion(*carved.cells[l]);
         kept.carvedForClearance += carved.clearance;
+        kept.givenInPassages += carved.given;
         kept.carvedForFront += carved.front;
         kept.droppedIslands += carved.islands;
         kept.zoneNames.push_back(region.name);

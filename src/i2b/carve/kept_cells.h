@@ -1,4 +1,4 @@
-// The cells that become the mesh: painted, far enough from the wall, with a front that prisms can be extruded from.
+// The cells that become the mesh: painted, far enough from the wall or inside a narrow passage, with a front that prisms can be extruded from.
 #pragma once
 #include "i2b/grid/cell_grid.h"
 #include <cstdint>
@@ -11,7 +11,7 @@ struct KeptCells {
     std::vector<Mask::Ptr> levels;                 // by level, all kept cells
     std::vector<std::string> zoneNames;            // one per painted region; a single one needs no cellZone
     std::vector<std::vector<Mask::Ptr>> zones;     // [zone][level]: empty where there is one zone only
-    std::uint64_t carvedForClearance = 0, carvedForFront = 0, droppedIslands = 0; // cells
+    std::uint64_t carvedForClearance = 0, givenInPassages = 0, carvedForFront = 0, droppedIslands = 0; // cells
 
     std::uint64_t cellCount() const;
     std::uint64_t checksum() const;

@@ -248,6 +248,9 @@ Band buildBand(const LatticeMesh& mesh, const Front& front, int rings) {
     const std::vector<std::int32_t> nodeOf = numberNodes(band, mesh, marks, rings);
     band.frontNode.resize(band.walls);
     for (std::size_t v = 0; v < band.walls; ++v) band.frontNode[v] = nodeOf[static_cast<std::size_t>(front.corePoint[v])];
+    band.inside.resize(band.fronts);
+    band.behind.assign(band.fronts, 0);
+    for (std::size_t v = 0; v < band.walls; ++v) band.inside[static_cast<std::size_t>(band.frontNode[v]) - band.walls] = front.inside[v];
     band.fansOf = rowsOf<std::int32_t>(
         band.fronts, band.walls, [&](std::size_t v, const auto& put) { put(static_cast<std::size_t>(band.frontNode[v]) - band.walls); },
         [](std::size_t v) { return static_cast<std::int32_t>(v); });

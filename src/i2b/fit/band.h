@@ -46,6 +46,8 @@ struct Band {
     std::vector<std::uint8_t> outside;    // per node: sides of the domain box that it lies in
     std::vector<std::int32_t> corePoint;  // per node from walls on: number in the LatticeMesh
     std::vector<std::int32_t> frontNode;  // per wall node: its front node
+    std::vector<Vec3> inside;             // m, per front node (less walls): amid the kept cells around it
+    std::vector<std::uint8_t> behind;     // per front node (less walls): starts behind geometry, seen from inside
     Csr<std::int32_t> fansOf;             // per front node (less walls): its wall nodes
     std::vector<Corner> corners;
     Csr<std::int32_t> cornersOf;          // per movable node

@@ -55,10 +55,10 @@ void spread(const Band& band, std::vector<double>& alpha) {
     }
 }
 
-void place(const Band& band, const std::vector<Vec3>& goal, const std::vector<double>& alpha, std::vector<Vec3>& x,
+void place(const Band& band, const std::vector<Vec3>& start, const std::vector<Vec3>& goal, const std::vector<double>& alpha, std::vector<Vec3>& x,
            std::vector<std::uint8_t>& moved) {
     parallelFor(band.movable, [&](std::size_t n) {
-        const Vec3 to = band.start[n] + (goal[n] - band.start[n]) * alpha[n];
+        const Vec3 to = start[n] + (goal[n] - start[n]) * alpha[n];
         moved[n] = !(to == x[n]);
         x[n] = to;
     });
@@ -81,11 +81,11 @@ double scaledJacobian(const Corner& c, const std::vector<Vec3>& x) {
     return l > 0 ? dot(cross(e1, e2), e3) / l : -1;
 }
 
-std::vector<double> blend(const Band& band, const std::vector<Vec3>& goal, std::vector<Vec3>& x) {
+std::vector<double> blend(const Band& band, const std::vector<Vec3>& start, const std::vector<Vec3>& goal, std::vector<Vec3>& x) {
     std::vector<double> alpha(band.movable, 1);
-    x = band.start;
+    x = start;
     std::vector<std::uint8_t> moved(band.nodes(), 0);
-    place(band, goal, alpha, x, moved);
+    place(band, start, goal, alpha, x, moved);
     for (int round = 0;; ++round) {
         const bool gentle = round < gentleRounds;
         if (round == gentleRounds) std::fill(moved.begin(), moved.end(), std::uint8_t(1)); // judged by another limit now
@@ -97,7 +97,7 @@ std::vector<double> blend(const Band& band, const std::vector<Vec3>& goal, std::
             continue;
         }
         if (gentle) spread(band, alpha);
-        place(band, goal, alpha, x, moved);
+        place(band, start, goal, alpha, x, moved);
     }
     return alpha;
 }

@@ -65,6 +65,19 @@ struct WallTerm {
     }
 };
 
+// Draws a front node that stands behind geometry back to the flow's side.
+WallTerm wayOut(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, std::size_t n, double weight) {
+    WallTerm term;
+    const std::size_t i = n - band.walls;
+    const SegmentHit hit = index.firstHit(band.inside[i], x[n]);
+    if (!hit) return term;
+    term.inverseH = 1 / band.h[n];
+    term.weight = weight;
+    const Vec3 way = x[n] - band.inside[i];
+    term.add(normalized(way), way * (1 - 0.7 * hit.t));
+    return term;
+}
+
 // The plane of a wall node's target, or the line or point that it is snapped to.
 WallTerm wallTerm(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const Snap& snap, const std::vector<Vec3>& x,
                   std::size_t n, double weight) {
@@ -205,6 +218,8 @@ bool pathsStayFree(const Band& band, const SurfaceIndex& index, const std::vecto
         return !crosses(index, f, to, band.h[n]) || crosses(index, f, x[n], band.h[n]);
     }
     if (n >= band.walls + band.fronts) return true;
+    const std::size_t i = n - band.walls;
+    if (band.behind[i] && index.firstHit(band.inside[i], to) && !index.firstHit(band.inside[i], x[n])) return false;
     for (std::int32_t fan : band.fansOf[n - band.walls]) {
         const Vec3& b = x[static_cast<std::size_t>(fan)];
         if (crosses(index, to, b, band.h[n]) && !crosses(index, x[n], b, band.h[n])) return false;
@@ -273,6 +288,7 @@ void minimiseEnergy(const Band& band, const SurfaceIndex& index, const FeatureIn
                         if (lambda > 5) floors[n].update(worst, floor);
                         wall = wallTerm(band, index, features, snaps[n], x, n, lambda * floors[n].factor);
                     }
+                    if (n >= band.walls && n < band.walls + band.fronts && band.behind[n - band.walls]) wall = wayOut(band, index, x, n, lambda);
                     Vec3 d = bestMove(corners, wall, band.outside[n], options.cap * band.h[n], options.newtonSteps);
                     if (d == Vec3{}) continue;
                     for (int half = 0; half < 3; ++half, d *= 0.5) {

@@ -55,6 +55,7 @@ void store(const Band& band, const std::vector<Vec3>& x, Front& front) {
 // lattice's. Two bands at a time would be the most memory of a run.
 void rebuild(Band& band, const LatticeMesh& mesh, Front& front) {
     const std::vector<Vec3> start = std::move(band.start);
+    const std::vector<std::uint8_t> behind = std::move(band.behind);
     const std::size_t walls = band.walls;
     band = Band{};
     std::vector<FrontMesh::Point> placed;
@@ -64,6 +65,7 @@ void rebuild(Band& band, const LatticeMesh& mesh, Front& front) {
         front.mesh.set_point(h, {start[v].x, start[v].y, start[v].z});
     }
     band = buildBand(mesh, front, rings);
+    band.behind = behind;
     for (std::size_t v = 0; v < walls; ++v) front.mesh.set_point(FrontMesh::VertexHandle(static_cast<int>(v)), placed[v]);
 }
 
@@ -83,10 +85,11 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     Band band = buildBand(mesh, front, rings);
     summary.wallNodes = band.walls;
     context.checkCancelled();
-    const std::vector<Vec3> goal = goalPositions(band, index, options.sweeps);
+    const std::vector<Vec3> start = startPositions(band, index);
+    const std::vector<Vec3> goal = goalPositions(band, index, start, options.sweeps);
     context.checkCancelled();
     std::vector<Vec3> x;
-    const std::vector<double> alpha = blend(band, goal, x);
+    const std::vector<double> alpha = blend(band, start, goal, x);
     for (std::size_t v = 0; v < band.walls; ++v) summary.blended += alpha[v] == 1;
 
     const FeatureIndex features(graph);

@@ -39,12 +39,19 @@ struct WallTarget {
 };
 WallTarget wallTarget(const SurfaceIndex& index, const Band& band, std::size_t wallNode, const Vec3& f, const Vec3& b);
 
+// Front nodes in narrow passages start behind a wall. Marks them in the band and gives valid positions with all of
+// them on the flow's side, as far as the corners allow; the band's own where none is behind.
+std::vector<Vec3> startPositions(Band& band, const SurfaceIndex& index);
+
+// Where the front node of a wall node stands, or the last place on the flow's side on the way to it.
+Vec3 seenFront(const SurfaceIndex& index, const Band& band, std::size_t wallNode, const Vec3& f);
+
 // Direct positions: smoothed front, projected wall, relaxed core (Jacobi; positions per node).
-std::vector<Vec3> goalPositions(const Band& band, const SurfaceIndex& index, int sweeps);
+std::vector<Vec3> goalPositions(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& start, int sweeps);
 
 // x = start + alpha (goal - start) with the largest alpha per node, bounded in slope, that leaves every corner good.
 // Gives alpha per movable node; x is filled.
-std::vector<double> blend(const Band& band, const std::vector<Vec3>& goal, std::vector<Vec3>& x);
+std::vector<double> blend(const Band& band, const std::vector<Vec3>& start, const std::vector<Vec3>& goal, std::vector<Vec3>& x);
 
 // Corner quality: phi = 0.75 |J|^2 / (3 D^(2/3)) + 0.125 (D + 1/D), infinite where D <= 0; 1 for the ideal corner.
 double cornerEnergy(const Corner& corner, const std::vector<Vec3>& x);

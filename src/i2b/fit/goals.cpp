@@ -1,6 +1,7 @@
 #include "i2b/core/parallel.h"
 #include "i2b/fit/corner.h"
 #include "i2b/fit/fit.h"
+#include <algorithm>
 
 namespace i2b {
 namespace {
@@ -53,7 +54,7 @@ Vec3 stoppedByGeometry(const SurfaceIndex& index, const Vec3& from, const Vec3& 
 
 bool isFront(const Band& band, std::size_t n) { return n >= band.walls && n < band.walls + band.fronts; }
 
-void smoothSurface(const Band& band, const SurfaceIndex& index, std::vector<Vec3>& x) {
+void smoothSurface(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& start, std::vector<Vec3>& x) {
     const std::vector<Vec3> old = x;
     parallelFor(band.fronts, [&](std::size_t i) {
         const std::size_t n = band.walls + i;
@@ -66,7 +67,7 @@ void smoothSurface(const Band& band, const SurfaceIndex& index, std::vector<Vec3
         }
         if (weight == 0) return;
         const Vec3 move = withinSides((sum / weight - old[n]) * 0.7, band.outside[n]);
-        x[n] = stoppedByGeometry(index, band.start[n], old[n] + move);
+        x[n] = stoppedByGeometry(index, start[n], old[n] + move);
     });
 }
 
@@ -95,13 +96,13 @@ void projectWalls(const Band& band, const SurfaceIndex& index, std::vector<Vec3>
     });
 }
 
-void relaxVolume(const Band& band, const SurfaceIndex& index, std::vector<Vec3>& x) {
+void relaxVolume(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& start, std::vector<Vec3>& x) {
     const std::vector<Vec3> old = x;
     parallelFor(band.movable - band.walls, [&](std::size_t i) {
         const std::size_t n = band.walls + i;
         const Vec3 to = isFront(band, n) ? weightedMean(band.edges[n], old) : band.start[n] + meanMove(band, band.edges[n], old);
         const Vec3 moved = old[n] + withinSides(to - old[n], band.outside[n]);
-        x[n] = isFront(band, n) ? stoppedByGeometry(index, band.start[n], moved) : moved;
+        x[n] = isFront(band, n) ? stoppedByGeometry(index, start[n], moved) : moved;
     });
     // Nodes that hang on a coarse edge or face stay on it; parents never hang themselves on the same level.
     const std::vector<Vec3> relaxed = x;
@@ -117,8 +118,9 @@ void relaxVolume(const Band& band, const SurfaceIndex& index, std::vector<Vec3>&
 
 } // namespace
 
-WallTarget wallTarget(const SurfaceIndex& index, const Band& band, std::size_t wall, const Vec3& f, const Vec3& b) {
+WallTarget wallTarget(const SurfaceIndex& index, const Band& band, std::size_t wall, const Vec3& front, const Vec3& b) {
     WallTarget target;
+    const Vec3 f = seenFront(index, band, wall, front);
     const double h = band.h[wall], length = norm(f - b);
     const std::uint8_t outside = band.outside[wall];
     ClosestPoint c;
@@ -140,12 +142,35 @@ WallTarget wallTarget(const SurfaceIndex& index, const Band& band, std::size_t w
     return target;
 }
 
-std::vector<Vec3> goalPositions(const Band& band, const SurfaceIndex& index, int sweeps) {
-    std::vector<Vec3> x = band.start;
-    smoothSurface(band, index, x);
+std::vector<Vec3> startPositions(Band& band, const SurfaceIndex& index) {
+    std::vector<Vec3> goal = band.start;
+    parallelFor(band.fronts, [&](std::size_t i) {
+        const std::size_t n = band.walls + i;
+        const SegmentHit hit = index.firstHit(band.inside[i], band.start[n]);
+        if (!hit || hit.t <= 0) return;
+        band.behind[i] = 1;
+        goal[n] = band.inside[i] + (band.start[n] - band.inside[i]) * (0.5 * hit.t);
+        for (std::int32_t b : band.fansOf[i]) goal[static_cast<std::size_t>(b)] += goal[n] - band.start[n];
+    });
+    if (std::find(band.behind.begin(), band.behind.end(), 1) == band.behind.end()) return band.start;
+    std::vector<Vec3> x;
+    blend(band, band.start, goal, x);
+    return x;
+}
+
+Vec3 seenFront(const SurfaceIndex& index, const Band& band, std::size_t wall, const Vec3& f) {
+    const std::size_t i = static_cast<std::size_t>(band.frontNode[wall]) - band.walls;
+    if (!band.behind[i]) return f;
+    const SegmentHit hit = index.firstHit(band.inside[i], f);
+    return hit ? band.inside[i] + (f - band.inside[i]) * (0.5 * hit.t) : f;
+}
+
+std::vector<Vec3> goalPositions(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& start, int sweeps) {
+    std::vector<Vec3> x = start;
+    smoothSurface(band, index, start, x);
     projectWalls(band, index, x, true);
     for (int i = 0; i < sweeps; ++i) {
-        relaxVolume(band, index, x);
+        relaxVolume(band, index, start, x);
         projectWalls(band, index, x, false);
     }
     return x;

@@ -50,9 +50,21 @@ void sizesPerAxis(Front& front, const LatticeMesh& mesh) {
     }
 }
 
+// From a vertex to the middle of the octants of one component, in edges of the cells around it.
+Vec3 towardsComponent(const VertexPattern& pattern, std::uint8_t component) {
+    Vec3 sum;
+    double n = 0;
+    for (int o = 0; o < 8; ++o) {
+        if (pattern.component[static_cast<std::size_t>(o)] != component) continue;
+        sum += {o & 1 ? 0.5 : -0.5, o & 2 ? 0.5 : -0.5, o & 4 ? 0.5 : -0.5};
+        n += 1;
+    }
+    return n > 0 ? sum / n : sum;
+}
+
 void addVertices(Front& front, const LatticeMesh& mesh, double thickness) {
     const auto n = static_cast<std::size_t>(mesh.fanCount());
-    front.front.resize(n), front.corePoint.resize(n), front.h.resize(n), front.size.resize(n), front.direction.resize(n), front.outside.resize(n);
+    front.front.resize(n), front.corePoint.resize(n), front.h.resize(n), front.size.resize(n), front.inside.resize(n), front.direction.resize(n), front.outside.resize(n);
     for (int l = 0; l < mesh.pointLevels(); ++l) {
         mesh.frontPoints(l).forEach([&](std::int64_t slot, const Index3& v) {
             const LatticeMesh::FrontPoint& p = mesh.frontPoint(slot);
@@ -61,6 +73,7 @@ void addVertices(Front& front, const LatticeMesh& mesh, double thickness) {
                 const std::size_t i = static_cast<std::size_t>(p.firstFan) + f;
                 const std::uint8_t component = pattern.fanComponent[f];
                 front.front[i] = mesh.lattice().corner(l, v);
+                front.inside[i] = towardsComponent(pattern, component);
                 front.corePoint[i] = component == 0 ? p.point : p.firstExtra + component - 1;
                 front.h[i] = mesh.lattice().h(l);
                 front.size[i] = mesh.lattice().cellSize(l);
@@ -74,6 +87,8 @@ void addVertices(Front& front, const LatticeMesh& mesh, double thickness) {
     for (std::size_t i = 0; i < n; ++i) {
         const Vec3 d{double(front.direction[i][0]), double(front.direction[i][1]), double(front.direction[i][2])};
         const Vec3 b = front.front[i] + d * (thickness * front.h[i]);
+        const Vec3 s = front.size[i];
+        front.inside[i] = front.front[i] + Vec3{front.inside[i].x * s.x, front.inside[i].y * s.y, front.inside[i].z * s.z};
         front.mesh.add_vertex({b.x, b.y, b.z});
     }
 }
@@ -128,7 +143,7 @@ void assignParts(Front& front, const SurfaceIndex& index) {
 
 std::string Front::validate() const {
     const std::size_t n = mesh.n_vertices(), m = mesh.n_faces();
-    if (front.size() != n || corePoint.size() != n || h.size() != n || size.size() != n || direction.size() != n || outside.size() != n) {
+    if (front.size() != n || corePoint.size() != n || h.size() != n || size.size() != n || inside.size() != n || direction.size() != n || outside.size() != n) {
         return "arrays per vertex differ in length";
     }
     if (ownerCell.size() != m || part.size() != m || level.size() != m || pieces.size() != m) return "arrays per face differ in length";

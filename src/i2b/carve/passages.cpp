@@ -1,0 +1,198 @@
+#include "i2b/carve/passages.h"
+#include "i2b/grid/mask_ops.h"
+#include <algorithm>
+
+namespace i2b {
+namespace {
+
+struct Step { // a cell that has been reached
+    Place cell;
+    double clearance = 0; // m, from its centre to the geometry
+    friend bool operator<(const Step& a, const Step& b) { return a.cell < b.cell; }
+};
+using Steps = std::vector<Step>; // in order of cells
+
+bool contains(const Steps& steps, const Place& c) { return std::binary_search(steps.begin(), steps.end(), Step{c, 0}); }
+
+// Candidates that share a face with a painted cell of their level.
+std::vector<Place> besidePainted(const Room& room) {
+    std::vector<Place> places;
+    for (std::size_t l = 0; l < room.candidates().size(); ++l) {
+        const std::vector<const MaskLeaf*> leaves = leavesOf(std::as_const(*room.candidates()[l]));
+        constexpr std::size_t chunk = 64;
+        std::vector<std::vector<Place>> parts((leaves.size() + chunk - 1) / chunk);
+        parallelChunks(leaves.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const Index3 o = toIndex(leaves[i]->origin());
+                bits::forEach(leafBits(leaves[i]), [&](int x, int y, int z) {
+                    const Place cell{static_cast<std::int32_t>(l), {o[0] + x, o[1] + y, o[2] + z}};
+                    if (room.isKept(cell)) return;
+                    for (int d = 0; d < 6; ++d) {
+                        if (!room.isPainted(faceNeighbour(cell, d))) continue;
+                        parts[c].push_back(cell);
+                        return;
+                    }
+                });
+            }
+        });
+        for (const std::vector<Place>& part : parts) places.insert(places.end(), part.begin(), part.end());
+    }
+    std::sort(places.begin(), places.end());
+    return places;
+}
+
+// Candidates beside the last step that are new.
+std::vector<Place> besides(const Room& room, const Steps& last, const Steps& reached) {
+    std::vector<Place> places;
+    for (const Step& s : last) {
+        for (int d = 0; d < 6; ++d) {
+            const Place n = faceNeighbour(s.cell, d);
+            if (room.isCandidate(n) && !room.isKept(n) && !contains(reached, n)) places.push_back(n);
+        }
+    }
+    std::sort(places.begin(), places.end());
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+    return places;
+}
+
+// Those of the places that have room and a way to them from a cell that from() takes.
+template <class From>
+Steps reachable(const Room& room, const std::vector<Place>& places, const From& from) {
+    Steps steps(places.size());
+    parallelFor(
+        places.size(),
+        [&](std::size_t i) {
+            steps[i] = {places[i], -1};
+            double clearance = 0;
+            if (!room.has(places[i], clearance)) return;
+            for (int d = 0; d < 6; ++d) {
+                const Place n = faceNeighbour(places[i], d);
+                if (!from(n) || !room.isWay(n, places[i])) continue;
+                steps[i].clearance = clearance;
+                return;
+            }
+        },
+        64);
+    std::erase_if(steps, [](const Step& s) { return s.clearance < 0; });
+    return steps;
+}
+
+// Directions from a cell, a bit each: those with a way out, and those of them that lead to a kept cell.
+struct Ways {
+    unsigned out = 0, toKept = 0;
+    // Walls on two opposite sides: so it is in a passage, and not above a sharp edge.
+    bool isWalled() const { return (out & 0x03u) == 0 || (out & 0x0cu) == 0 || (out & 0x30u) == 0; }
+};
+
+Ways waysOf(const Room& room, const Place& c) {
+    Ways ways;
+    for (int d = 0; d < 6; ++d) {
+        const Place n = faceNeighbour(c, d);
+        if (!room.isWay(c, n)) continue;
+        ways.out |= 1u << d;
+        if (room.isKept(n)) ways.toKept |= 1u << d;
+    }
+    return ways;
+}
+
+bool opposed(const Ways& a, const Ways& b) { return ((a.toKept & 0x15u) << 1 & b.toKept) != 0 || ((b.toKept & 0x15u) << 1 & a.toKept) != 0; }
+
+// Those of the first step that lie between kept cells on two sides, alone or two of them together.
+Steps between(const Room& room, const Steps& first) {
+    std::vector<Ways> ways(first.size());
+    parallelFor(first.size(), [&](std::size_t i) { ways[i] = waysOf(room, first[i].cell); }, 64);
+    Steps found;
+    for (std::size_t i = 0; i < first.size(); ++i) {
+        bool between = opposed(ways[i], ways[i]);
+        for (int d = 0; d < 6 && !between; ++d) {
+            const Place n = faceNeighbour(first[i].cell, d);
+            const auto other = std::lower_bound(first.begin(), first.end(), Step{n, 0});
+            if (!(ways[i].out >> d & 1) || other == first.end() || other->cell != n) continue;
+            const Ways& theirs = ways[static_cast<std::size_t>(other - first.begin())];
+            between = opposed(ways[i], theirs);
+        }
+        if (between) found.push_back(first[i]);
+    }
+    return found;
+}
+
+// Painted cells that went for clearance, where given cells hang on them.
+Steps supports(const Room& room, const Steps& cleared, const Steps& given) {
+    Steps found;
+    for (const Step& s : given) {
+        if (waysOf(room, s.cell).toKept != 0) continue;
+        for (int d = 0; d < 6; ++d) {
+            const Place n = faceNeighbour(s.cell, d);
+            const auto other = std::lower_bound(cleared.begin(), cleared.end(), Step{n, 0});
+            if (other != cleared.end() && other->cell == n && room.isWay(s.cell, n)) found.push_back(*other);
+        }
+    }
+    return found;
+}
+
+// Those of the first step with a way on to the second.
+Steps leadingOn(const Room& room, const Steps& first, const Steps& second) {
+    Steps leading;
+    for (const Step& s : first) {
+        for (int d = 0; d < 6; ++d) {
+            const Place n = faceNeighbour(s.cell, d);
+            if (!contains(second, n) || !room.isWay(s.cell, n)) continue;
+            leading.push_back(s);
+            break;
+        }
+    }
+    return leading;
+}
+
+// Of two cells with a wall between them the one that is kept stays, else the one with more room.
+std::vector<Place> withoutWallsBetween(const Room& room, const Steps& given) {
+    std::vector<std::uint8_t> goes(given.size(), 0);
+    parallelFor(
+        given.size(),
+        [&](std::size_t i) {
+            const Step& s = given[i];
+            for (int d = 0; d < 6; ++d) {
+                const Place n = faceNeighbour(s.cell, d);
+                const auto other = std::lower_bound(given.begin(), given.end(), Step{n, 0});
+                const bool isGiven = other != given.end() && other->cell == n;
+                if ((!isGiven && !room.isKept(n)) || !room.isWallBetween(s.cell, n)) continue;
+                if (!isGiven || s.clearance < other->clearance || (s.clearance == other->clearance && n < s.cell)) goes[i] = 1;
+            }
+        },
+        64);
+    std::vector<Place> cells;
+    for (std::size_t i = 0; i < given.size(); ++i) {
+        if (!goes[i]) cells.push_back(given[i].cell);
+    }
+    return cells;
+}
+
+void append(Steps& to, const Steps& more) {
+    to.insert(to.end(), more.begin(), more.end());
+    std::sort(to.begin(), to.end());
+    to.erase(std::unique(to.begin(), to.end(), [](const Step& a, const Step& b) { return a.cell == b.cell; }), to.end());
+}
+
+} // namespace
+
+std::vector<Place> passageCells(const Room& room) {
+    // Cells that went for clearance count as flow: only what lies two steps behind the painted cells is a passage.
+    std::vector<Place> places = besidePainted(room);
+    const auto cut = std::stable_partition(places.begin(), places.end(), [&](const Place& c) { return room.isPainted(c); });
+    const Steps cleared = reachable(room, {places.begin(), cut}, [&](const Place& n) { return room.isKept(n); });
+    const Steps first = reachable(room, {cut, places.end()}, [&](const Place& n) { return room.isKept(n) || contains(cleared, n); });
+    Steps front = cleared;
+    append(front, first);
+    Steps given = between(room, front), last = first, reached = front;
+    for (int depth = 2; depth <= passageDepth && !last.empty(); ++depth) {
+        Steps next = reachable(room, besides(room, last, reached), [&](const Place& n) { return contains(last, n); });
+        if (depth == 2) append(given, leadingOn(room, first, next));
+        append(given, next);
+        append(reached, next);
+        last = std::move(next);
+    }
+    append(given, supports(room, cleared, given));
+    return withoutWallsBetween(room, given);
+}
+
+} // namespace i2b

@@ -1,0 +1,59 @@
+// Which removed cells may be given back to a region: cut cells, cells too close to the geometry and cells that paint
+// left in pockets, where their centre has room and lies on the flow's side.
+#pragma once
+#include "i2b/carve/vertices.h"
+#include "i2b/geometry/surface_index.h"
+#include "i2b/paint/regions.h"
+
+namespace i2b {
+
+struct RoomOptions {
+    double centre = 0.35;           // of h: least distance from a given cell's centre to the geometry
+    double way = 0.3;               // of h: least distance from the way between two centres
+    std::uint64_t pocketCells = 64; // an unpainted region of so many cells is part of a passage, not a room of its own
+};
+
+// Cells beside another region, in sight of it, have no room: paint decides which regions are meshed. A crack narrower
+// than about 0.55 h lets no way through.
+class Room {
+  public:
+    // kept: of the region; looked at as it is when asked, never changed here. taken: of regions carved before.
+    Room(const CellGrid& grid, const CutCells& cut, const Regions& regions, const Region& region, const std::vector<Mask::Ptr>& kept,
+         const std::vector<Mask::Ptr>& taken, const SurfaceIndex& index, const RoomOptions& options = {});
+
+    const std::vector<Mask::Ptr>& candidates() const { return candidates_; } // by level: removed at first, may come back
+    bool isCandidate(const Place& c) const { return isOn(candidates_, c) || isOn(painted_, c); }
+    bool isKept(const Place& c) const { return isOn(kept_, c); }
+    bool isPainted(const Place& c) const { return isOn(painted_, c); } // of the region, kept or not
+
+    // Has the cell room? clearance: m, from its centre to the geometry, as far as an edge.
+    bool has(const Place& c, double& clearance) const;
+    // May one go straight from centre to centre, with room all along?
+    bool isWay(const Place& a, const Place& b) const;
+    // Does geometry cross the straight line between the centres?
+    bool isWallBetween(const Place& a, const Place& b) const { return bool(index_.firstHit(centre(a), centre(b))); }
+    // Is there a way from a kept neighbour, and no wall to any of them? The cell can then join them.
+    bool mayJoin(const Place& c, double& clearance) const;
+
+  private:
+    Vec3 centre(const Place& c) const { return grid_.lattice.cellBox(grid_.levels[std::size_t(c.level)].level, c.at).centre(); }
+    double h(const Place& c) const { return grid_.lattice.h(grid_.levels[std::size_t(c.level)].level); }
+    bool isOn(const std::vector<Mask::Ptr>& masks, const Place& c) const { return masks[std::size_t(c.level)]->isValueOn(toCoord(c.at)); }
+    bool isForeign(const Place& c) const { // an uncut cell of another region
+        return grid_.levels[std::size_t(c.level)].cells->isValueOn(toCoord(c.at)) && !isKept(c) && !isCandidate(c);
+    }
+    bool touchesTaken(const Place& c) const;
+
+    const CellGrid& grid_;
+    const std::vector<Mask::Ptr>&kept_, &taken_;
+    const SurfaceIndex& index_;
+    RoomOptions options_;
+    std::vector<Mask::Ptr> painted_, candidates_;
+};
+
+inline Place faceNeighbour(Place c, int direction) { // direction: 2 * axis (+ 1 for the high side)
+    c.at[static_cast<std::size_t>(direction >> 1)] += direction & 1 ? 1 : -1;
+    return c;
+}
+
+} // namespace i2b
