@@ -9,7 +9,9 @@ namespace {
 constexpr double degree = 3.14159265358979323846 / 180;
 const double smallestTurn = std::cos(25 * degree), largestTurn = std::cos(135 * degree);
 const double confirmedTurn = std::cos(35 * degree);
-const double flatCorner = std::cos(140 * degree);
+const double flatCorner = std::cos(140 * degree), thinCorner = std::cos(12 * degree);
+constexpr double onLine = 0.05;   // of h: so far from a sharp edge the middle of a cut may be
+const double alongLine = std::cos(20 * degree);
 constexpr double reach = 1.2; // of h: no node is pulled farther to a feature
 
 // What a wall node sees: its place on the geometry and the unit normal there, towards the fluid.
@@ -208,8 +210,8 @@ std::size_t snapToFeatures(const Band& band, const Front& front, const SurfaceIn
     return added;
 }
 
-std::size_t splitAlongFeatures(Front& front, const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x,
-                               const std::vector<Snap>& snaps) {
+std::size_t splitAlongFeatures(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features,
+                               const std::vector<Vec3>& x, const std::vector<Snap>& snaps) {
     const std::size_t faces = front.ownerCell.size();
     std::vector<std::int8_t> diagonal(faces, -1); // 0: vertices 0 and 2, 1: vertices 1 and 3
     const auto verticesOf = [&](std::size_t f, std::array<std::int32_t, 8>& v) {
@@ -217,24 +219,37 @@ std::size_t splitAlongFeatures(Front& front, const Band& band, const SurfaceInde
         for (auto h : front.mesh.fv_range(FrontMesh::FaceHandle(static_cast<int>(f)))) v[n++] = h.idx();
         return n;
     };
+    // Where a node will be: snapped ones have not arrived yet.
+    const auto going = [&](std::size_t n) { return snaps[n].kind == SnapKind::none ? x[n] : snaps[n].point; };
+    const auto angle = [&](std::size_t at, std::size_t p, std::size_t q) { // cosine
+        return dot(normalized(going(p) - going(at)), normalized(going(q) - going(at)));
+    };
+    const auto isThin = [&](std::size_t p, std::size_t q, std::size_t r) {
+        return angle(p, q, r) > thinCorner || angle(q, r, p) > thinCorner || angle(r, p, q) > thinCorner;
+    };
+    // A cut from p to q runs along a sharp edge of the soup, or the nodes beside it, r and t, stand on different sides of a line.
+    const auto crossesAlong = [&](std::size_t p, std::size_t q, std::size_t r, std::size_t t) {
+        const FeatureIndex::Line line = features.closestLine((going(p) + going(q)) * 0.5, onLine * band.h[p]);
+        if (line.found && std::abs(dot(line.tangent, normalized(going(q) - going(p)))) > alongLine) return true;
+        if (snaps[r].kind != SnapKind::none || snaps[t].kind != SnapKind::none) return false;
+        const Foot a = footOf(band, index, x, r), b = footOf(band, index, x, t);
+        return a.found && b.found && dot(a.normal, b.normal) <= smallestTurn;
+    };
+    const auto isSnapped = [&](std::size_t n) { return snaps[n].kind != SnapKind::none; };
     parallelFor(faces, [&](std::size_t f) {
         std::array<std::int32_t, 8> v{};
         if (verticesOf(f, v) != 4) return;
+        double widest = 2; // cosine; below flatCorner for corners that ask for a cut
         for (std::size_t d = 0; d < 2; ++d) {
             const auto s = [&](std::size_t i) { return static_cast<std::size_t>(v[(i + d) % 4]); };
-            if (snaps[s(0)].kind == SnapKind::none || snaps[s(2)].kind == SnapKind::none) continue;
-            const Foot a = footOf(band, index, x, s(1)), b = footOf(band, index, x, s(3));
-            if (!a.found || !b.found || dot(a.normal, b.normal) > smallestTurn) continue;
-            diagonal[f] = static_cast<std::int8_t>(d);
-            return;
-        }
-        // A snapped node between two others of the same line has no corner in the quad: two triangles give it two.
-        double widest = flatCorner;
-        for (std::size_t i = 0; i < 4; ++i) {
-            const auto at = [&](std::size_t k) { return static_cast<std::size_t>(v[k % 4]); };
-            if (snaps[at(i)].kind == SnapKind::none) continue;
-            const double c = dot(normalized(x[at(i + 1)] - x[at(i)]), normalized(x[at(i + 3)] - x[at(i)]));
-            if (c < widest) widest = c, diagonal[f] = static_cast<std::int8_t>(i % 2);
+            if (isThin(s(0), s(1), s(2)) || isThin(s(0), s(2), s(3))) continue; // three nodes of one line
+            // A snapped node between two others of the same line has no corner in the quad: two triangles give it two.
+            double corner = std::min(isSnapped(s(0)) ? angle(s(0), s(1), s(3)) : 1, isSnapped(s(2)) ? angle(s(2), s(3), s(1)) : 1);
+            if (corner > flatCorner) {
+                if (!isSnapped(s(0)) || !isSnapped(s(2)) || !crossesAlong(s(0), s(2), s(1), s(3))) continue;
+                corner = 1;
+            }
+            if (corner < widest) widest = corner, diagonal[f] = static_cast<std::int8_t>(d);
         }
     });
     std::size_t count = 0;

@@ -45,7 +45,7 @@ std::size_t snapToFeatures(const Band& band, const Front& front, const SurfaceIn
 
 // Splits quads of the front whose diagonal is snapped and whose other two nodes lie on different sides. Front
 // numbering stays but for faces, which are renumbered in order of their owner cells. Gives how many were split.
-std::size_t splitAlongFeatures(Front& front, const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x,
-                               const std::vector<Snap>& snaps);
+std::size_t splitAlongFeatures(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features,
+                               const std::vector<Vec3>& x, const std::vector<Snap>& snaps);
 
 } // namespace i2b

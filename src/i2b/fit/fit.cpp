@@ -108,14 +108,18 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     }
     pull({1e3});
     active = activeNodes(band, index, x);
-    if (options.features) {
+    const auto snapAndSplit = [&] {
         snapToFeatures(band, front, index, features, x, snaps);
         store(band, x, front);
-        summary.split = splitAlongFeatures(front, band, index, x, snaps);
-        if (summary.split > 0) rebuild(band, mesh, front);
+        const std::size_t split = splitAlongFeatures(front, band, index, features, x, snaps);
+        summary.split += split;
+        if (split > 0) rebuild(band, mesh, front);
         activateSnapped(band, snaps, active);
-    }
-    pull({1e3, 1e5, 1e6, 1e6});
+    };
+    if (options.features) snapAndSplit();
+    pull({1e3, 1e5});
+    if (options.features) snapAndSplit(); // what has come into view since
+    pull({1e6, 1e6});
     snapExactly(band, index, features, snaps, x, energy);
     for (const Snap& s : snaps) summary.snapped += s.kind != SnapKind::none;
     for (std::uint8_t a : active) summary.active += a;
