@@ -7,12 +7,15 @@ namespace i2b {
 namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180;
-const double smallestTurn = std::cos(25 * degree), largestTurn = std::cos(135 * degree);
+const double smallestTurn = std::cos(25 * degree);
 const double confirmedTurn = std::cos(35 * degree);
 const double flatCorner = std::cos(140 * degree), thinCorner = std::cos(12 * degree);
+constexpr double besideLine = 0.25; // of h: steps off a line along the planes that meet in it
+constexpr double roundedOff = 0.25; // of h: so far from the geometry two planes may meet where an edge is rounded
+constexpr double steps = 0.08;      // of h: a wall edge whose middle is farther off than this cuts across something
 constexpr double onLine = 0.05;   // of h: so far from a sharp edge the middle of a cut may be
 const double alongLine = std::cos(20 * degree);
-constexpr double reach = 1.2; // of h: no node is pulled farther to a feature
+constexpr double reach = 2.2; // of h: no node is pulled farther to a feature
 
 // What a wall node sees: its place on the geometry and the unit normal there, towards the fluid.
 struct Foot {
@@ -41,7 +44,7 @@ Foot footOf(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>
 
 bool turns(const Foot& a, const Foot& b) {
     const double c = dot(a.normal, b.normal);
-    return a.found && b.found && c < smallestTurn && c > largestTurn;
+    return a.found && b.found && c < smallestTurn;
 }
 
 // The line in which the tangent planes of two feet meet, looked at again on the geometry three times.
@@ -62,13 +65,14 @@ FeatureIndex::Line implicitLine(const SurfaceIndex& index, Foot a, Foot b, const
         const auto along = [&](const Foot& foot) {
             const Vec3 d = foot.point - p;
             const Vec3 inPlane = d - line.tangent * dot(d, line.tangent) - foot.normal * dot(d, foot.normal);
-            return normalized(inPlane) * (0.15 * h);
+            return normalized(inPlane) * (besideLine * h);
         };
         const Foot na = footAt(index, p + along(a), fluid, h), nb = footAt(index, p + along(b), fluid, h);
         if (!na.found || !nb.found) return line;
         a = na, b = nb, middle = p;
     }
-    const ClosestPoint on = index.closest(line.point, 0.03 * h);
+    const ClosestPoint on = index.closest(line.point, roundedOff * h);
+    if (on) line.point = on.point; // of a rounded edge the middle
     line.found = on && dot(a.normal, b.normal) < confirmedTurn;
     return line;
 }
@@ -79,31 +83,55 @@ struct Crossing {
     Snap snap;
 };
 
+// The feature between two feet: a sharp edge of the soup, or else the line in which their tangent planes meet.
+struct Between {
+    FeatureIndex::Line line;
+    SnapKind kind = SnapKind::none;
+};
+
+Between lineBetween(const SurfaceIndex& index, const FeatureIndex& features, const Foot& a, const Foot& b, const Vec3& fluid, double h) {
+    const FeatureIndex::Line line = features.closestLine((a.point + b.point) * 0.5, 0.8 * norm(a.point - b.point));
+    if (line.found) return {line, SnapKind::line};
+    return {implicitLine(index, a, b, fluid, h), SnapKind::implicitLine};
+}
+
+// A node on its way to a line; none where that is too far or the node may not be snapped.
+Crossing crossingAt(const Band& band, const FeatureIndex& features, const std::vector<Vec3>& x, const Between& between, std::int32_t node) {
+    const auto i = static_cast<std::size_t>(node);
+    if (!between.line.found || band.outside[i] != 0) return {};
+    FeatureIndex::Line own = between.line;
+    if (between.kind == SnapKind::line) own = features.closestLine(x[i], reach * band.h[i]);
+    else own.point = own.point + own.tangent * dot(x[i] - own.point, own.tangent);
+    const double d = own.found ? norm(own.point - x[i]) / band.h[i] : reach + 1;
+    if (d > reach) return {};
+    return {d, node, -1, {between.kind, own.point, own.tangent}};
+}
+
 // The better end of a wall edge that crosses a feature.
 Crossing crossingOf(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x,
                     const std::vector<Foot>& feet, std::int32_t p, std::int32_t q) {
-    Crossing best;
     const auto a = static_cast<std::size_t>(p), b = static_cast<std::size_t>(q);
-    const double h = std::max(band.h[a], band.h[b]), length = norm(feet[a].point - feet[b].point);
-    const Vec3 middle = (feet[a].point + feet[b].point) * 0.5;
-    FeatureIndex::Line line = features.closestLine(middle, 0.8 * length);
-    SnapKind kind = SnapKind::line;
-    if (!line.found) {
-        line = implicitLine(index, feet[a], feet[b], x[static_cast<std::size_t>(band.frontNode[a])], h);
-        kind = SnapKind::implicitLine;
-    }
-    if (!line.found) return best;
-    for (std::int32_t n : {p, q}) {
-        const auto i = static_cast<std::size_t>(n);
-        FeatureIndex::Line own = line;
-        if (kind == SnapKind::line) own = features.closestLine(x[i], reach * band.h[i]);
-        else own.point = line.point + line.tangent * dot(x[i] - line.point, line.tangent);
-        if (!own.found || band.outside[i] != 0) continue;
-        const double d = norm(own.point - x[i]) / band.h[i];
-        if (d > reach || (best.node >= 0 && d >= best.distance)) continue;
-        best = {d, n, n == p ? q : p, {kind, own.point, own.tangent}};
-    }
-    return best;
+    const Between between = lineBetween(index, features, feet[a], feet[b], x[static_cast<std::size_t>(band.frontNode[a])], std::max(band.h[a], band.h[b]));
+    Crossing first = crossingAt(band, features, x, between, p), second = crossingAt(band, features, x, between, q);
+    first.other = q, second.other = p;
+    if (first.node < 0 || (second.node >= 0 && second.distance < first.distance)) return second;
+    return first;
+}
+
+// A wall edge from one side of a step to the other: both ends stand on surfaces that do not turn, its middle off all
+// geometry. Each end has a line between itself and the riser that the middle sees.
+std::array<Crossing, 2> stepOf(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x,
+                               const std::vector<Foot>& feet, std::int32_t p, std::int32_t q) {
+    std::array<Crossing, 2> found;
+    const auto a = static_cast<std::size_t>(p), b = static_cast<std::size_t>(q);
+    const double h = std::max(band.h[a], band.h[b]);
+    const Vec3 fluid = (x[static_cast<std::size_t>(band.frontNode[a])] + x[static_cast<std::size_t>(band.frontNode[b])]) * 0.5;
+    const Vec3 middle = (x[a] + x[b]) * 0.5;
+    const Foot riser = footAt(index, middle, fluid, h);
+    if (!riser.found || norm(riser.point - middle) < steps * h) return found;
+    if (turns(feet[a], riser)) found[0] = crossingAt(band, features, x, lineBetween(index, features, feet[a], riser, fluid, h), p);
+    if (turns(feet[b], riser)) found[1] = crossingAt(band, features, x, lineBetween(index, features, feet[b], riser, fluid, h), q);
+    return found;
 }
 
 bool hangs(const Band& band, std::size_t wall) { return !band.parents[static_cast<std::size_t>(band.frontNode[wall])].empty(); }
@@ -190,20 +218,25 @@ std::size_t snapToFeatures(const Band& band, const Front& front, const SurfaceIn
     std::vector<Foot> feet(band.walls);
     parallelFor(band.walls, [&](std::size_t n) { feet[n] = footOf(band, index, x, n); });
     std::size_t added = snapCorners(band, features, feet, x, snaps);
-    std::vector<Crossing> crossings(front.mesh.n_edges());
-    parallelFor(crossings.size(), [&](std::size_t e) {
+    std::vector<Crossing> crossings(2 * front.mesh.n_edges());
+    parallelFor(front.mesh.n_edges(), [&](std::size_t e) {
         const auto he = front.mesh.halfedge_handle(FrontMesh::EdgeHandle(static_cast<int>(e)), 0);
         const std::int32_t p = front.mesh.from_vertex_handle(he).idx(), q = front.mesh.to_vertex_handle(he).idx();
         const auto a = static_cast<std::size_t>(p), b = static_cast<std::size_t>(q);
         if (snaps[a].kind != SnapKind::none || snaps[b].kind != SnapKind::none) return;
-        if (hangs(band, a) || hangs(band, b) || !turns(feet[a], feet[b])) return;
-        crossings[e] = crossingOf(band, index, features, x, feet, p, q);
+        if (hangs(band, a) || hangs(band, b)) return;
+        if (turns(feet[a], feet[b])) {
+            crossings[2 * e] = crossingOf(band, index, features, x, feet, p, q);
+        } else if (feet[a].found && feet[b].found) {
+            const std::array<Crossing, 2> ends = stepOf(band, index, features, x, feet, p, q);
+            crossings[2 * e] = ends[0], crossings[2 * e + 1] = ends[1];
+        }
     });
     std::erase_if(crossings, [](const Crossing& c) { return c.node < 0; });
     std::stable_sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) { return a.distance < b.distance; });
     for (const Crossing& c : crossings) {
         Snap& snap = snaps[static_cast<std::size_t>(c.node)];
-        if (snap.kind != SnapKind::none || snaps[static_cast<std::size_t>(c.other)].kind != SnapKind::none) continue;
+        if (snap.kind != SnapKind::none || (c.other >= 0 && snaps[static_cast<std::size_t>(c.other)].kind != SnapKind::none)) continue;
         snap = c.snap;
         ++added;
     }

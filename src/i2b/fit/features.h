@@ -1,7 +1,7 @@
 // Features of the geometry on the wall mesh: nodes are snapped to sharp edges and corners, and faces whose diagonal
 // lies on an edge are split along it, front and wall alike, so that every prism stands on one side.
 //
-// A wall edge whose two ends lie on surfaces that differ by 25 to 135 degrees crosses a feature. Where the soup has a
+// A wall edge whose two ends lie on surfaces that differ by more than 25 degrees crosses a feature. Where the soup has a
 // sharp edge there, that is it; where it has none (parts that intersect without a common edge), it is the line in
 // which the tangent planes of the two ends meet, if the geometry confirms it.
 #pragma once

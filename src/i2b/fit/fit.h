@@ -60,8 +60,8 @@ double scaledJacobian(const Corner& corner, const std::vector<Vec3>& x);
 struct EnergyOptions {
     std::vector<double> wallWeights{0.1, 10, 100, 1e3, 1e5, 1e6};
     int newtonSteps = 3;
-    double floor = 0.15;          // scaled Jacobian below which the wall pulls less
-    double featureFloor = 0.1;    // the same for nodes snapped to features
+    double floor = 0.03;          // scaled Jacobian below which the wall pulls less
+    double featureFloor = 0.01;   // the same for nodes snapped to features
     double cap = 0.3;             // of h: longest step
 };
 // Gauss-Seidel over a colouring of the active nodes. active: per movable node.
