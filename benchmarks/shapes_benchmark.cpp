@@ -69,7 +69,7 @@ struct Spread {
 
 struct Figures {
     int runs = 0, invalid = 0, failing = 0; // failing: a check of plain checkMesh
-    Spread nonOrthogonality, skewness, nodes, faces, capture, tilted, extended;
+    Spread nonOrthogonality, skewness, nodes, faces, capture, sampled, tilted, extended;
 
     void add(const ShapeRun& run) {
         ++runs;
@@ -82,6 +82,7 @@ struct Figures {
         nodes.add(run.fit.wallNodesOnGeometryFraction, false);
         faces.add(run.fit.meanDistanceInH, true);
         if (run.fit.featureSamples > 0) capture.add(run.fit.featureCaptureFraction, false);
+        sampled.add(run.sampled, false);
         tilted.add(run.fit.tiltedFaceFraction, true);
         extended.add(static_cast<double>(q.smallDeterminantCells + q.lowWeightFaces + q.lowVolumeRatioFaces), true);
     }
@@ -92,9 +93,9 @@ std::string percent(const Spread& s) {
 }
 
 void print(const std::string& name, const Figures& f) {
-    std::cout << fmt::format("{:<37} {:>4} {:>3} {:>3}  {:5.1f} {:6.2f} {:4.0f}   {}   {}   {}   {:6.3f}\n", name, f.runs, f.invalid,
+    std::cout << fmt::format("{:<37} {:>4} {:>3} {:>3}  {:5.1f} {:6.2f} {:4.0f}   {}   {:5.0f}   {}   {}   {:6.3f}\n", name, f.runs, f.invalid,
                              f.failing, f.nonOrthogonality.worst, f.skewness.worst, f.extended.worst,
-                             percent(f.capture), percent(f.nodes), percent(f.tilted), f.faces.worst)
+                             percent(f.capture), 100 * f.sampled.worst, percent(f.nodes), percent(f.tilted), f.faces.worst)
               << std::flush;
 }
 
@@ -102,9 +103,9 @@ const char* nameOf(Side side) { return side == Side::inside ? "inside" : "outsid
 
 void record(std::ofstream& out, const std::string& name, double h, unsigned pose, const ShapeRun& run) {
     if (!out.is_open()) return;
-    out << fmt::format("{},{},{},{},{:.2f},{:.3f},{:.5f},{},{:.5f},{:.5f},{:.4f},{:.4f},{},{}\n", name, h, pose, run.quality.cells,
+    out << fmt::format("{},{},{},{},{:.2f},{:.3f},{:.5f},{},{:.3f},{:.5f},{:.5f},{:.4f},{:.4f},{},{}\n", name, h, pose, run.quality.cells,
                        run.quality.maxNonOrthogonality, run.quality.maxSkewness, run.fit.featureCaptureFraction,
-                       run.fit.featureSamples, run.fit.wallNodesOnGeometryFraction, run.fit.tiltedFaceFraction,
+                       run.fit.featureSamples, run.sampled, run.fit.wallNodesOnGeometryFraction, run.fit.tiltedFaceFraction,
                        run.fit.meanDistanceInH, run.fit.maxDistanceInH, plainFailures(run.quality), run.fault)
         << std::flush;
 }
@@ -136,13 +137,14 @@ int main(int argc, char** argv) try {
     std::ofstream runs;
     if (!a.runs.empty()) {
         runs.open(a.runs);
-        runs << "shape,h,pose,cells,non_orthogonality,skewness,capture,samples,nodes_on_geometry,tilted,faces_off_h,farthest_h,plain_failures,fault\n";
+        runs << "shape,h,pose,cells,non_orthogonality,skewness,capture,samples,sampled,nodes_on_geometry,tilted,faces_off_h,farthest_h,plain_failures,fault\n";
     }
     std::cout << "runs; how many invalid, and failing plain checkMesh; worst non-orthogonality, skewness, number of small determinants + low\n"
-                 "weights + low volume ratios; then worst and mean: resolvable sharp edges captured, wall nodes within 0.01 h, faces tilted (%);\n"
-                 "wall face centres off the geometry, worst run's mean (h)\n\n"
-              << fmt::format("{:<37} {:>4} {:>3} {:>3}  {:>5} {:>6} {:>4}   {:>15}   {:>15}   {:>15}   {:>6}\n", "shape", "runs", "inv",
-                             "bad", "n-o", "skew", "ext", "captured %", "nodes on %", "tilted %", "off h");
+                 "weights + low volume ratios; then worst and mean: resolvable sharp edges captured (and how much of all sharp lines was\n"
+                 "judged at all: the wall within h / 2 of it), wall nodes within 0.01 h, faces tilted (%); wall face centres off the\n"
+                 "geometry, worst run's mean (h)\n\n"
+              << fmt::format("{:<37} {:>4} {:>3} {:>3}  {:>5} {:>6} {:>4}   {:>15}   {:>5}   {:>15}   {:>15}   {:>6}\n", "shape", "runs", "inv",
+                             "bad", "n-o", "skew", "ext", "captured %", "of %", "nodes on %", "tilted %", "off h");
     for (const Shape& shape : shapes())
         for (const Side side : {Side::outside, Side::inside})
             if (wanted(a, shape, side)) print(fmt::format("{}:{}", shape.name, nameOf(side)), measure(shape, side, a, runs));

@@ -65,6 +65,13 @@ FeatureGraph sharpLines(const Surface& soup, const ShapeGeometry& g) {
     return features;
 }
 
+double sharpLength(const FeatureGraph& features) {
+    double length = 0;
+    for (const FeatureEdge& e : features.edges)
+        if (e.angle >= 40) length += norm(features.points[e.b] - features.points[e.a]);
+    return length;
+}
+
 std::string faultOf(const PolyMesh& mesh, const QualityReport& q) {
     if (std::string fault = mesh.validate(); !fault.empty()) return fault;
     if (q.negativeVolumeCells > 0) return std::to_string(q.negativeVolumeCells) + " negative volumes";
@@ -96,7 +103,10 @@ ShapeRun meshShape(const Shape& shape, Side side, double h, unsigned seed) {
         MeshResult result = generate(options, context);
         run.mesh = std::move(result.mesh);
         run.quality = result.report.quality.value();
-        run.fit = measureFit(run.mesh, *result.cartesian->index, sharpLines(result.cartesian->surface, g));
+        const FeatureGraph lines = sharpLines(result.cartesian->surface, g);
+        run.fit = measureFit(run.mesh, *result.cartesian->index, lines);
+        if (const double length = sharpLength(lines); length > 0)
+            run.sampled = static_cast<double>(run.fit.featureSamples) * h / 4 / length;
         run.fault = faultOf(run.mesh, run.quality);
     } catch (const Error& e) {
         run.fault = e.problem() + ": " + e.remedy();

@@ -12,6 +12,9 @@ struct ShapeRun {
     PolyMesh mesh;
     QualityReport quality;
     FitReport fit;         // against the soup's own sharp edges and the shape's lines
+    // Samples of fit's capture over those that all sharp lines have room for. Falls where lines cannot be resolved or lie
+    // hidden in another part, which is the shape's doing; and where the wall stays over h / 2 away, which is the mesh's.
+    double sampled = 0;
 };
 
 // Turned and shifted against the lattice at random: the same pose for the same shape and seed.

@@ -180,10 +180,10 @@ ShapeGeometry nestedSpheres(double h) {
     return g;
 }
 
-// Six faces that stop short of the edges. Just under 0.2 cells from rim to rim, so that a line within 0.1 cells of
-// the crack's middle may be either rim, or the edge that the two planes would have.
+// Six faces, each 0.1 cells short of the edges: 0.2 cells of skin are missing along every edge. Its line is the crack's
+// middle, 0.07 cells from either rim and from the edge that the two planes would have: any of the three will do.
 ShapeGeometry crackedCube(double h) {
-    const double half = 0.5, shrunk = half - 0.19 * h / std::sqrt(2.0);
+    const double half = 0.5, shrunk = half - 0.1 * h;
     std::vector<Mesh> faces;
     ShapeGeometry lines;
     for (int axis = 0; axis < 3; ++axis)
@@ -191,7 +191,7 @@ ShapeGeometry crackedCube(double h) {
             Vec3 n, u, v;
             n[axis] = side, u[(axis + 1) % 3] = shrunk, v[(axis + 2) % 3] = shrunk;
             faces.push_back({{n - u - v, n + u - v, n + u + v, n - u + v}, {{0, 1, 2}, {0, 2, 3}}});
-            for (const double other : {-1.0, 1.0}) { // the cracks along v
+            for (const double other : {-1.0, 1.0}) { // cracks along v: each of the twelve comes up once
                 const Vec3 middle = n * ((half + shrunk) / (2 * half)) + u * (other * (half + shrunk) / (2 * shrunk));
                 lines.lines.push_back({middle - v, middle + v});
             }
