@@ -65,7 +65,9 @@ void run(const std::string& geometry, double size, const std::filesystem::path& 
 } // namespace
 
 int main(int argc, char** argv) try {
-    if (argc != 4) throw i2b::Error(i2b::ErrorKind::usage, "three arguments are needed", "command line", "front_stages GEOMETRY.stl SIZE FOLDER");
+    if (argc != 4)
+        throw i2b::Error(i2b::ErrorKind::usage, "three arguments are needed", "command line",
+                         "write front_stages GEOMETRY.stl SIZE FOLDER");
     run(argv[1], std::stod(argv[2]), argv[3]);
     return 0;
 } catch (const std::exception& e) {

@@ -103,7 +103,8 @@ const char* nameOf(Side side) { return side == Side::inside ? "inside" : "outsid
 
 void record(std::ofstream& out, const std::string& name, double h, unsigned pose, const ShapeRun& run) {
     if (!out.is_open()) return;
-    out << fmt::format("{},{},{},{},{:.2f},{:.3f},{:.5f},{},{:.3f},{:.5f},{:.5f},{:.4f},{:.4f},{},{}\n", name, h, pose, run.quality.cells,
+    out << fmt::format("{},{},{},{},{:.2f},{:.3f},{:.5f},{},{:.3f},{:.5f},{:.5f},{:.4f},{:.4f},{},{}\n", name, h, pose,
+                       run.quality.cells,
                        run.quality.maxNonOrthogonality, run.quality.maxSkewness, run.fit.featureCaptureFraction,
                        run.fit.featureSamples, run.sampled, run.fit.wallNodesOnGeometryFraction, run.fit.tiltedFaceFraction,
                        run.fit.meanDistanceInH, run.fit.maxDistanceInH, plainFailures(run.quality), run.fault)
@@ -118,7 +119,8 @@ Figures measure(const Shape& shape, Side side, const Arguments& a, std::ofstream
             figures.add(run);
             record(runs, fmt::format("{}:{}", shape.name, nameOf(side)), h, pose, run);
             if (!a.ply.empty() && run.mesh.cells > 0)
-                writePly(run.mesh, fmt::format("{}/{}-{}-{}-{}.ply", a.ply, shape.name, nameOf(side), h, pose), Context());
+                writePly(run.mesh, fmt::format("{}/{}-{}-{}-{}.ply", a.ply, shape.name, nameOf(side), h, pose),
+                         Context());
         }
     return figures;
 }
@@ -137,14 +139,15 @@ int main(int argc, char** argv) try {
     std::ofstream runs;
     if (!a.runs.empty()) {
         runs.open(a.runs);
-        runs << "shape,h,pose,cells,non_orthogonality,skewness,capture,samples,sampled,nodes_on_geometry,tilted,faces_off_h,farthest_h,plain_failures,fault\n";
+        runs << "shape,h,pose,cells,non_orthogonality,skewness,capture,samples,sampled,nodes_on_geometry,tilted,"
+                "faces_off_h,farthest_h,plain_failures,fault\n";
     }
-    std::cout << "runs; how many invalid, and failing plain checkMesh; worst non-orthogonality, skewness, number of small determinants + low\n"
-                 "weights + low volume ratios; then worst and mean: resolvable sharp edges captured (and how much of all sharp lines was\n"
-                 "judged at all: the wall within h / 2 of it), wall nodes within 0.01 h, faces tilted (%); wall face centres off the\n"
-                 "geometry, worst run's mean (h)\n\n"
-              << fmt::format("{:<37} {:>4} {:>3} {:>3}  {:>5} {:>6} {:>4}   {:>15}   {:>5}   {:>15}   {:>15}   {:>6}\n", "shape", "runs", "inv",
-                             "bad", "n-o", "skew", "ext", "captured %", "of %", "nodes on %", "tilted %", "off h");
+    std::cout << "runs; how many invalid, and failing plain checkMesh; worst non-orthogonality, skewness, number of small\n"
+                 "determinants + low weights + low volume ratios; then worst and mean: resolvable sharp edges captured (and\n"
+                 "how much of all sharp lines was judged at all: the wall within h / 2 of it), wall nodes within 0.01 h,\n"
+                 "faces tilted (%); wall face centres off the geometry, worst run's mean (h)\n\n"
+              << fmt::format("{:<37} {:>4} {:>3} {:>3}  {:>5} {:>6} {:>4}   {:>15}   {:>5}   {:>15}   {:>15}   {:>6}\n", "shape",
+                             "runs", "inv", "bad", "n-o", "skew", "ext", "captured %", "of %", "nodes on %", "tilted %", "off h");
     for (const Shape& shape : shapes())
         for (const Side side : {Side::outside, Side::inside})
             if (wanted(a, shape, side)) print(fmt::format("{}:{}", shape.name, nameOf(side)), measure(shape, side, a, runs));

@@ -1,5 +1,6 @@
-// Proves, on every test shape in one pose at each of the two coarser sizes (the finest takes most of the time): the mesh is valid and closed and passes plain checkMesh, and its wall
-// follows the shape no worse than it has before. benchmarks/shapes_benchmark prints the same figures over more poses.
+// Proves, on every test shape in one pose at each of the two coarser sizes (the finest takes most of the time): the mesh is
+// valid and closed and passes plain checkMesh, and its wall follows the shape no worse than it has before.
+// benchmarks/shapes_benchmark prints the same figures over more poses.
 #include "pipeline/shape_run.h"
 #include <algorithm>
 #include <fmt/format.h>
@@ -114,7 +115,9 @@ TEST(ShapeTable, IsWhatItSays) {
         const ShapeGeometry g = shape.make(shapeSizes[0]);
         EXPECT_EQ(g.soup.validate(), "") << shape.name;
         for (const Vec3& p : g.soup.points) EXPECT_LE(norm(p), shapeRadius) << shape.name;
-        if (std::string(shape.name) == "two-tetrahedra") EXPECT_EQ(g.lines.size(), 12u);
+        if (std::string(shape.name) == "two-tetrahedra") {
+            EXPECT_EQ(g.lines.size(), 12u);
+        }
     }
 }
 

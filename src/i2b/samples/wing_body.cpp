@@ -82,11 +82,14 @@ void addBody(Parts& parts, const Make& make) {
     // Points gather at the nose's tip, where its radius grows as a root.
     const auto nose = [&](double s, double turns) { return skin(noseEnd * s * std::abs(s), turns); };
     const auto base = [&](double s, double turns) { return aroundBody(length, s * bodyRadius(length), turns); };
-    parts.push_back({"nose", structured(make, {{14, 30, 14, 36}, {0, 1}, {0, 1}, {0, -0.04, 0, 0}}, nose)});
-    parts.push_back({"barrel_top", structured(make, {{24, 18, 24, 18}, {noseEnd, tailStart}, {0, 0.5}, {0, 0.03, 0.03, -0.02}}, skin)});
-    parts.push_back({"barrel_bottom", structured(make, {{20, 14, 24, 18}, {noseEnd, tailStart}, {0.5, 1}, {0.02, 0.02, 0, -0.02}}, skin)});
-    parts.push_back({"tail", structured(make, {{16, 26, 16, 36}, {tailStart, length}, {0, 1}, {-0.02, 0, 0, 0.03}}, skin)});
-    parts.push_back({"base", structured(make, {{3, 20, 3, 36}, {0, 1}, {0, 1}, {0, 0.05, 0, 0}}, base)});
+    const auto add = [&](const char* name, const Patch& patch, const auto& point) {
+        parts.push_back({name, structured(make, patch, point)});
+    };
+    add("nose", {{14, 30, 14, 36}, {0, 1}, {0, 1}, {0, -0.04, 0, 0}}, nose);
+    add("barrel_top", {{24, 18, 24, 18}, {noseEnd, tailStart}, {0, 0.5}, {0, 0.03, 0.03, -0.02}}, skin);
+    add("barrel_bottom", {{20, 14, 24, 18}, {noseEnd, tailStart}, {0.5, 1}, {0.02, 0.02, 0, -0.02}}, skin);
+    add("tail", {{16, 26, 16, 36}, {tailStart, length}, {0, 1}, {-0.02, 0, 0, 0.03}}, skin);
+    add("base", {{3, 20, 3, 36}, {0, 1}, {0, 1}, {0, 0.05, 0, 0}}, base);
 }
 
 // ---- lifting surfaces: u along the chord, v along the span
@@ -118,11 +121,14 @@ void addWing(Parts& parts, const Make& make, const std::string& name, const Wing
     const auto cap = [&](double s, double t) {
         return wing.at(s, 1, 1) * t + wing.at(s, 1, -1) * (1 - t);
     };
-    parts.push_back({name + "_upper", structured(make, {{22, 20, 20, 20}, {stripEnd, 1}, {0, 1}, {0.1, 0, 0, 0}}, upper)});
-    parts.push_back({name + "_lower", structured(make, {{16, 14, 20, 20}, {stripEnd, 1}, {0, 1}, {-0.2, 0, 0, -0.01}}, lower)});
-    parts.push_back({name + "_leading", structured(make, {{12, 26, 12, 20}, {-stripEnd, stripEnd}, {0, 1}, {0, 0.05, 0, 0.01}}, strip)});
+    const auto add = [&](const char* place, const Patch& patch, const auto& point) {
+        parts.push_back({name + place, structured(make, patch, point)});
+    };
+    add("_upper", {{22, 20, 20, 20}, {stripEnd, 1}, {0, 1}, {0.1, 0, 0, 0}}, upper);
+    add("_lower", {{16, 14, 20, 20}, {stripEnd, 1}, {0, 1}, {-0.2, 0, 0, -0.01}}, lower);
+    add("_leading", {{12, 26, 12, 20}, {-stripEnd, stripEnd}, {0, 1}, {0, 0.05, 0, 0.01}}, strip);
     // Clean, as many cells in front of the strip's end as half the strip has.
-    parts.push_back({name + "_tip", structured(make, {{18, 3, 6, 1}, {0, stripEnd}, {0, 1}, {0, 0, 0, 0}}, cap)});
+    add("_tip", {{18, 3, 6, 1}, {0, stripEnd}, {0, 1}, {0, 0, 0, 0}}, cap);
     append(parts.back().mesh, structured(make, {{14, 3, 20, 1}, {stripEnd, 1}, {0, 1}, {0, 0, 0.05, -0.05}}, cap));
 }
 
