@@ -40,7 +40,7 @@ TEST(Sample, IsReproducible) {
             EXPECT_NE(checksumOf(makeSample(name, {1, 2})), first[name]) << name;
         }
     }
-    for (const char* name : {"engine", "missile", "tunnel"})
+    for (const char* name : {"engine", "missile", "wing-body", "tunnel"})
         EXPECT_NE(checksumOf(makeSample(name, {0, 1})), first[name]) << name;
     for (const char* name : {"box", "sphere"})
         EXPECT_EQ(checksumOf(makeSample(name, {0, 1})), first[name]) << name;
@@ -82,6 +82,22 @@ TEST(Sample, MissileHasFourfoldSymmetry) {
     }
     // Dirty: the rims of nose and body, with different counts of points.
     EXPECT_EQ(test::countEdges(makeSample("missile"), 0).open, 64u + 48u);
+}
+
+// Clean, the aircraft's patches close together but for the three roots inside the body; dirty, hardly a border
+// agrees.
+TEST(Sample, WingBodyIsMadeOfPatchesThatMeet) {
+    const Surface s = makeSample("wing-body", {0, 1});
+    ASSERT_EQ(s.parts.size(), 17u);
+    const test::EdgeCount e = test::countEdges(s);
+    EXPECT_EQ(e.open, 3u * (20 + 20 + 12));
+    EXPECT_EQ(e.crowded, 0u);
+    Box box;
+    for (const Vec3& p : s.points) box.add(p);
+    EXPECT_DOUBLE_EQ(box.extent().x, 2);
+    EXPECT_DOUBLE_EQ(box.hi.y, 0.95);
+    EXPECT_DOUBLE_EQ(box.lo.y, -0.95);
+    EXPECT_GT(test::countEdges(makeSample("wing-body")).open, 500u);
 }
 
 // The tunnel's parts close together: every edge has two triangles, and the seed is inside, a place outside is

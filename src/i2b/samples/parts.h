@@ -24,6 +24,7 @@ Parts boxParts(const Make& make);
 Parts sphereParts(const Make& make);
 Parts tunnelParts(const Make& make);
 Parts missileParts(const Make& make);
+Parts wingBodyParts(const Make& make);
 Parts engineParts(const Make& make);
 
 // The groups of the engine.

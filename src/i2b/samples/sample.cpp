@@ -13,6 +13,7 @@ struct Entry {
 };
 constexpr Entry entries[] = {{"engine", samples::engineParts},
                              {"missile", samples::missileParts},
+                             {"wing-body", samples::wingBodyParts},
                              {"tunnel", samples::tunnelParts},
                              {"box", samples::boxParts},
                              {"sphere", samples::sphereParts}};

@@ -14,6 +14,10 @@
 // missile  Ogive nose, cylinder, boat tail and four sharp fins, 2 m long, along x, nose at the origin; parts
 // body
 //          and fin_1 .. fin_4. Dirty: cracks at the nose and under two fins, deeper roots of the others.
+// wing-body  An aircraft of 17 structured patches, each a part, as PLOT3D files bring them: 2 m long along x, nose at the
+//          origin, span 1.9 m along y, fin upwards. Dirty: neighbours differ in their counts of points along a shared
+//          border, and overlap or gape by a fraction of their cells, up to 3 mm times dirt: closed for cells of 6 mm and
+//          more. Clean: they share the border's points. The roots of wings and fin lie open inside the body.
 // tunnel   S-bent duct along x, 2 m long, 0.3 m square at the inlet, 0.2 m round at the outlet; parts wall,
 // inlet
 //          and outlet, closed together (seed "inside"). Dirty: both end faces cut differently and 0.5 mm
@@ -29,7 +33,7 @@ namespace i2b {
 
 struct SampleOptions {
     double dirt =
-        1; // scales cracks and overlaps; 0: the clean twin, each part a closed shell (not: tunnel's)
+        1; // scales cracks and overlaps; 0: the clean twin, each part a closed shell (not: tunnel's, wing-body's)
     int resolution = 1; // 1 to 8; multiplies the segments along curves
 };
 

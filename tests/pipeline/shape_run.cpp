@@ -1,0 +1,130 @@
+#include "pipeline/shape_run.h"
+#include "i2b/core/error.h"
+#include "i2b/geometry/write_stl.h"
+#include "i2b/program/generate.h"
+#include <algorithm>
+#include <filesystem>
+#include <random>
+#include <string_view>
+#include <unistd.h>
+
+namespace i2b::test {
+namespace {
+
+class Pose {
+  public:
+    Pose(const Shape& shape, double h, unsigned seed) {
+        for (const char c : std::string_view(shape.name)) seed = seed * 31u + static_cast<unsigned char>(c);
+        std::mt19937 random(seed);
+        const auto real = [&] { return static_cast<double>(random()) / 2147483648.0 - 1; }; // the standard's
+        double length = 0;                                          // distributions differ between libraries
+        while (length < 0.1 || length > 1) { // even over all turns: a quaternion even over the 3-sphere
+            for (double& v : q_) v = real();
+            length = std::sqrt(q_[0] * q_[0] + q_[1] * q_[1] + q_[2] * q_[2] + q_[3] * q_[3]);
+        }
+        for (double& v : q_) v /= length;
+        const double x = real(), y = real(), z = real();
+        shift_ = Vec3{x, y, z} * (h / 2);
+    }
+    Vec3 operator()(const Vec3& p) const {
+        const Vec3 v{q_[1], q_[2], q_[3]};
+        return p + 2 * cross(v, cross(v, p) + q_[0] * p) + shift_;
+    }
+
+  private:
+    std::array<double, 4> q_{};
+    Vec3 shift_;
+};
+
+Options optionsOf(const ShapeGeometry& g, Side side, double h) {
+    Options o;
+    o.size.surface = h;
+    o.size.max = 4 * h;
+    // A whole number of the largest cells, so that those at the wall are h exactly.
+    const double half = std::ceil((shapeRadius + 4 * h) / (4 * h)) * 4 * h;
+    o.domain.box = Box{{-half, -half, -half}, {half, half, half}};
+    o.domain.flow = side == Side::inside ? Flow::internal : Flow::external;
+    if (!g.seeds.empty()) o.domain.flow = Flow::automatic, o.domain.seeds = g.seeds;
+    return o;
+}
+
+std::filesystem::path temporaryFile() {
+    static int count = 0;
+    return std::filesystem::temp_directory_path() /
+           ("i2b_shape_" + std::to_string(getpid()) + "_" + std::to_string(count++) + ".stl");
+}
+
+// The soup's own edges and the lines that it does not know of, these as sharp as can be.
+FeatureGraph sharpLines(const Surface& soup, const ShapeGeometry& g) {
+    FeatureGraph features = buildFeatureGraph(soup, {});
+    for (const auto& [from, to] : g.lines) {
+        const auto n = static_cast<std::uint32_t>(features.points.size());
+        features.points.insert(features.points.end(), {from, to});
+        features.edges.push_back({n, n + 1, static_cast<std::uint8_t>(EdgeKind::sharp), 180});
+    }
+    return features;
+}
+
+double sharpLength(const FeatureGraph& features) {
+    double length = 0;
+    for (const FeatureEdge& e : features.edges)
+        if (e.angle >= 40) length += norm(features.points[e.b] - features.points[e.a]);
+    return length;
+}
+
+std::string faultOf(const PolyMesh& mesh, const QualityReport& q) {
+    if (std::string fault = mesh.validate(); !fault.empty()) return fault;
+    if (q.negativeVolumeCells > 0) return std::to_string(q.negativeVolumeCells) + " negative volumes";
+    if (q.wrongOrientedFaces > 0) return std::to_string(q.wrongOrientedFaces) + " wrong oriented faces";
+    if (q.openCells > 0) return std::to_string(q.openCells) + " open cells";
+    return "";
+}
+
+} // namespace
+
+ShapeGeometry posed(const Shape& shape, double h, unsigned seed) {
+    const Pose pose(shape, h, seed);
+    ShapeGeometry g = shape.make(h);
+    for (Vec3& p : g.soup.points) p = pose(p);
+    for (auto& line : g.lines) line = {pose(line[0]), pose(line[1])};
+    for (Seed& s : g.seeds) s.place = pose(s.place);
+    return g;
+}
+
+ShapeRun meshShape(const Shape& shape, Side side, double h, unsigned seed) {
+    const ShapeGeometry g = posed(shape, h, seed);
+    Options options = optionsOf(g, side, h);
+    const std::filesystem::path file = temporaryFile();
+    options.geometry.files = {file.string()};
+    ShapeRun run;
+    try {
+        writeStl(g.soup, file.string(), StlFormat::ascii);
+        Context context;
+        MeshResult result = generate(options, context);
+        run.mesh = std::move(result.mesh);
+        run.quality = result.report.quality.value();
+        const FeatureGraph lines = sharpLines(result.cartesian->surface, g);
+        run.fit = measureFit(run.mesh, *result.cartesian->index, lines);
+        if (const double length = sharpLength(lines); length > 0)
+            run.sampled = static_cast<double>(run.fit.featureSamples) * h / 4 / length;
+        run.fault = faultOf(run.mesh, run.quality);
+    } catch (const Error& e) {
+        run.fault = e.problem() + ": " + e.remedy();
+    }
+    std::filesystem::remove(file);
+    return run;
+}
+
+std::string plainFailures(const QualityReport& quality) {
+    static constexpr std::string_view extended[] = {
+        "zipUpCells", "edgeFaces",    "oneInternalFaceCells", "twoInternalFacesCells", "lowQualityTetFaces",
+        "shortEdges", "nearPoints",   "concaveFaces",         "warpedFaces",           "underdeterminedCells",
+        "concaveCells", "lowWeightFaces", "lowVolRatioFaces"};
+    std::string names;
+    for (const QualityCheck& c : quality.checks)
+        if (c.fails && std::ranges::find(extended, c.name) == std::end(extended))
+            names += c.name + " " + std::to_string(c.count) + " ";
+    return names;
+}
+
+} // namespace i2b::test
