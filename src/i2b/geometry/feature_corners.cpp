@@ -1,0 +1,51 @@
+#include "i2b/geometry/feature_corners.h"
+#include "i2b/geometry/feature_edges.h"
+
+namespace i2b {
+namespace {
+
+// What meets at a point, seen from it.
+struct Meeting {
+    std::uint32_t sharpEdges = 0;
+    Vec3 first, second; // directions of two of them
+    bool continued = false; // one sharp edge only, but a milder fold goes straight on: a bend that fades, no corner
+};
+
+// A tessellated radius folds by a little more here, a little less there than the limit. Its line is cut in
+// pieces then, whose ends would make most of the corners of a curved body.
+void markContinued(const std::vector<Vec3>& points, const std::vector<FeatureEdge>& all, double limit,
+                   std::vector<Meeting>& meetings) {
+    for (const FeatureEdge& e : all) {
+        if ((e.kinds & bitOf(EdgeKind::sharp)) || e.angle < limit / 2) continue;
+        const Vec3 d = normalized(points[e.b] - points[e.a]);
+        for (const auto& [point, away] : {std::pair{e.a, d}, std::pair{e.b, -d}}) {
+            Meeting& m = meetings[point];
+            if (m.sharpEdges == 1 && fold(m.first, away) <= limit) m.continued = true;
+        }
+    }
+}
+
+} // namespace
+
+std::vector<std::uint32_t> findCorners(const std::vector<Vec3>& points, const std::vector<FeatureEdge>& all,
+                                       double limit) {
+    std::vector<Meeting> meetings(points.size());
+    for (const FeatureEdge& e : all) {
+        if (!(e.kinds & bitOf(EdgeKind::sharp))) continue;
+        const Vec3 d = normalized(points[e.b] - points[e.a]);
+        for (const auto& [point, away] : {std::pair{e.a, d}, std::pair{e.b, -d}}) {
+            Meeting& m = meetings[point];
+            (m.sharpEdges++ == 0 ? m.first : m.second) = away;
+        }
+    }
+    markContinued(points, all, limit, meetings);
+    std::vector<std::uint32_t> corners;
+    for (std::uint32_t i = 0; i < meetings.size(); ++i) {
+        const Meeting& m = meetings[i];
+        if (m.sharpEdges == 0 || m.continued) continue;
+        if (m.sharpEdges != 2 || fold(m.first, m.second) > limit) corners.push_back(i);
+    }
+    return corners;
+}
+
+} // namespace i2b
