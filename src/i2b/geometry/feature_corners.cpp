@@ -6,9 +6,10 @@ namespace {
 
 // What meets at a point, seen from it.
 struct Meeting {
-    std::uint32_t sharpEdges = 0;
+    std::uint32_t lines = 0; // edges of lineKinds
+    bool named = false;      // one of them by the user
     Vec3 first, second; // directions of two of them
-    bool continued = false; // one sharp edge only, but a milder fold goes straight on: a bend that fades, no corner
+    bool continued = false; // one sharp edge, but a milder fold goes straight on: a bend that fades, no corner
 };
 
 // A tessellated radius folds by a little more here, a little less there than the limit. Its line is cut in
@@ -16,11 +17,11 @@ struct Meeting {
 void markContinued(const std::vector<Vec3>& points, const std::vector<FeatureEdge>& all, double limit,
                    std::vector<Meeting>& meetings) {
     for (const FeatureEdge& e : all) {
-        if ((e.kinds & bitOf(EdgeKind::sharp)) || e.angle < limit / 2) continue;
+        if ((e.kinds & lineKinds) || e.angle < limit / 2) continue;
         const Vec3 d = normalized(points[e.b] - points[e.a]);
         for (const auto& [point, away] : {std::pair{e.a, d}, std::pair{e.b, -d}}) {
             Meeting& m = meetings[point];
-            if (m.sharpEdges == 1 && fold(m.first, away) <= limit) m.continued = true;
+            if (m.lines == 1 && !m.named && fold(m.first, away) <= limit) m.continued = true;
         }
     }
 }
@@ -31,19 +32,20 @@ std::vector<std::uint32_t> findCorners(const std::vector<Vec3>& points, const st
                                        double limit) {
     std::vector<Meeting> meetings(points.size());
     for (const FeatureEdge& e : all) {
-        if (!(e.kinds & bitOf(EdgeKind::sharp))) continue;
+        if (!(e.kinds & lineKinds)) continue;
         const Vec3 d = normalized(points[e.b] - points[e.a]);
         for (const auto& [point, away] : {std::pair{e.a, d}, std::pair{e.b, -d}}) {
             Meeting& m = meetings[point];
-            (m.sharpEdges++ == 0 ? m.first : m.second) = away;
+            (m.lines++ == 0 ? m.first : m.second) = away;
+            m.named = m.named || (e.kinds & bitOf(EdgeKind::named));
         }
     }
     markContinued(points, all, limit, meetings);
     std::vector<std::uint32_t> corners;
     for (std::uint32_t i = 0; i < meetings.size(); ++i) {
         const Meeting& m = meetings[i];
-        if (m.sharpEdges == 0 || m.continued) continue;
-        if (m.sharpEdges != 2 || fold(m.first, m.second) > limit) corners.push_back(i);
+        if (m.lines == 0 || m.continued) continue;
+        if (m.lines != 2 || fold(m.first, m.second) > limit) corners.push_back(i);
     }
     return corners;
 }

@@ -92,22 +92,29 @@ double largestFold(const FeatureSoup& soup, const Side* sides, std::size_t n) {
     return largest;
 }
 
-FeatureEdge judge(const FeatureSoup& soup, const Side* sides, std::size_t n, double limit) {
+FeatureEdge judge(const FeatureSoup& soup, const Side* sides, std::size_t n, double limit,
+                  const std::vector<bool>& isNamed) {
     FeatureEdge edge{sides[0].edge.a, sides[0].edge.b, 0, 0};
     const double angle = largestFold(soup, sides, n);
     edge.angle = static_cast<float>(angle);
+    bool border = false, named = false;
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::int32_t part = soup.partOf[sides[i].triangle];
+        border = border || part != soup.partOf[sides[0].triangle];
+        named = named || (static_cast<std::size_t>(part) < isNamed.size() && isNamed[static_cast<std::size_t>(part)]);
+    }
     if (angle > limit) edge.kinds |= bitOf(EdgeKind::sharp);
     if (n == 1) edge.kinds |= bitOf(EdgeKind::free);
     if (n > 2) edge.kinds |= bitOf(EdgeKind::nonManifold);
-    for (std::size_t i = 1; i < n; ++i)
-        if (soup.partOf[sides[i].triangle] != soup.partOf[sides[0].triangle])
-            edge.kinds |= bitOf(EdgeKind::partBorder);
+    if (border) edge.kinds |= bitOf(EdgeKind::partBorder);
+    if (named && (border || n == 1)) edge.kinds |= bitOf(EdgeKind::named);
     return edge;
 }
 
 } // namespace
 
-std::vector<FeatureEdge> judgeEdges(const FeatureSoup& soup, double limit, FeatureGraph& graph) {
+std::vector<FeatureEdge> judgeEdges(const FeatureSoup& soup, double limit, const std::vector<bool>& isNamed,
+                                    FeatureGraph& graph) {
     const std::vector<Side> sides = collectSides(soup, graph);
     std::vector<std::size_t> start;
     start.reserve(sides.size() / 2 + 1);
@@ -116,7 +123,7 @@ std::vector<FeatureEdge> judgeEdges(const FeatureSoup& soup, double limit, Featu
     start.push_back(sides.size());
     std::vector<FeatureEdge> edges(start.size() - 1);
     parallelFor(edges.size(), [&](std::size_t i) {
-        edges[i] = judge(soup, &sides[start[i]], start[i + 1] - start[i], limit);
+        edges[i] = judge(soup, &sides[start[i]], start[i + 1] - start[i], limit, isNamed);
     });
     return edges;
 }

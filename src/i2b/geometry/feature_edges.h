@@ -6,14 +6,6 @@
 
 namespace i2b {
 
-constexpr std::uint8_t bitOf(EdgeKind kind) { return static_cast<std::uint8_t>(kind); }
-
-struct EdgeKey {
-    std::uint32_t a, b; // a < b
-    friend auto operator<=>(const EdgeKey&, const EdgeKey&) = default;
-};
-inline EdgeKey keyOf(std::uint32_t a, std::uint32_t b) { return a < b ? EdgeKey{a, b} : EdgeKey{b, a}; }
-
 // Degrees by which what leaves a place along u fails to go straight on along v: 0 straight, 180 folded back. Of two
 // triangles that leave their edge along u and v, the angle between their planes.
 inline double fold(const Vec3& u, const Vec3& v) {
@@ -21,7 +13,9 @@ inline double fold(const Vec3& u, const Vec3& v) {
 }
 
 // Steps 3 to 5 of features.cpp: every edge of the soup with its kinds and angle, those without a kind too; a < b,
-// ascending. limit: degrees above which it is sharp. Counts in the graph the needles that it bridges.
-std::vector<FeatureEdge> judgeEdges(const FeatureSoup& soup, double limit, FeatureGraph& graph);
+// ascending. limit: degrees above which it is sharp. isNamed: per part, whether its free edges and borders are named.
+// Counts in the graph the needles that it bridges.
+std::vector<FeatureEdge> judgeEdges(const FeatureSoup& soup, double limit, const std::vector<bool>& isNamed,
+                                    FeatureGraph& graph);
 
 } // namespace i2b

@@ -1,6 +1,7 @@
 #include "i2b/geometry/feature_soup.h"
 #include "i2b/core/parallel.h"
 #include <algorithm>
+#include <span>
 #include <tbb/parallel_sort.h>
 
 namespace i2b {
@@ -36,25 +37,25 @@ struct PointGrid {
 };
 
 // The lowest-numbered point within the tolerance of each used point (itself, if none is lower).
-std::vector<std::uint32_t> weldTargets(const Surface& s, const std::vector<std::uint32_t>& used,
+std::vector<std::uint32_t> weldTargets(std::span<const Vec3> points, const std::vector<std::uint32_t>& used,
                                        double tolerance, const Box& bounds) {
     // Never so small that a cell's number overflows.
     const PointGrid grid{bounds.lo, std::max({4 * tolerance, 1e-15 * norm(bounds.extent()), 1e-300})};
     std::vector<HashedPoint> sorted(used.size());
     parallelFor(used.size(), [&](std::size_t i) {
-        sorted[i] = {grid.at(s.points[used[i]]).hash(), used[i]};
+        sorted[i] = {grid.at(points[used[i]]).hash(), used[i]};
     });
     tbb::parallel_sort(sorted);
-    std::vector<std::uint32_t> target(s.points.size(), none);
+    std::vector<std::uint32_t> target(points.size(), none);
     const double limit = tolerance * tolerance;
     parallelFor(sorted.size(), [&](std::size_t i) {
         const std::uint32_t self = sorted[i].point;
-        const Vec3 p = s.points[self], r{tolerance, tolerance, tolerance};
+        const Vec3 p = points[self], r{tolerance, tolerance, tolerance};
         const GridCell lo = grid.at(p - r), hi = grid.at(p + r);
         std::uint32_t best = self;
         const auto look = [&](std::uint64_t hash, std::size_t from) {
             for (; from < sorted.size() && sorted[from].hash == hash && sorted[from].point < best; ++from)
-                if (norm2(s.points[sorted[from].point] - p) <= limit) best = sorted[from].point;
+                if (norm2(points[sorted[from].point] - p) <= limit) best = sorted[from].point;
         };
         for (std::int64_t x = lo.x; x <= hi.x; ++x)
             for (std::int64_t y = lo.y; y <= hi.y; ++y)
@@ -83,21 +84,35 @@ struct SortedCorners {
     friend auto operator<=>(const SortedCorners&, const SortedCorners&) = default;
 };
 
-void numberPoints(const Surface& s, std::vector<std::uint32_t>& target, FeatureSoup& soup) {
+// Numbers the welded points and turns targets into these numbers; gives how many come from the first `own` points.
+std::size_t numberPoints(std::span<const Vec3> points, std::size_t own, std::vector<std::uint32_t>& target,
+                         FeatureSoup& soup) {
     std::vector<std::uint32_t> number(target.size(), none);
+    std::size_t count = 0;
     for (std::size_t i = 0; i < target.size(); ++i) {
         if (target[i] == none) continue;
         if (target[i] == i) {
             number[i] = static_cast<std::uint32_t>(soup.points.size());
-            soup.points.push_back(s.points[i]);
+            soup.points.push_back(points[i]);
+            if (i < own) ++count;
         }
         target[i] = number[target[i]];
     }
+    return count;
+}
+
+// target: of the lines' points.
+void takeLines(const FeatureLines& lines, std::span<const std::uint32_t> target, FeatureSoup& soup) {
+    for (const auto& [a, b] : lines.segments)
+        if (target[a] != target[b]) soup.lines.push_back(keyOf(target[a], target[b]));
+    std::sort(soup.lines.begin(), soup.lines.end());
+    soup.lines.erase(std::unique(soup.lines.begin(), soup.lines.end()), soup.lines.end());
+    for (const std::uint32_t p : lines.corners) soup.corners.push_back(target[p]);
 }
 
 } // namespace
 
-FeatureSoup weldSoup(const Surface& s, FeatureGraph& graph) {
+FeatureSoup weldSoup(const Surface& s, const FeatureLines& lines, FeatureGraph& graph) {
     std::vector<bool> isUsed(s.points.size());
     for (const TriangleCorners& t : s.triangles)
         for (const std::uint32_t p : t) isUsed[p] = true;
@@ -107,10 +122,18 @@ FeatureSoup weldSoup(const Surface& s, FeatureGraph& graph) {
         if (isUsed[i]) used.push_back(i), bounds.add(s.points[i]);
     if (graph.weldTolerance <= 0 && !used.empty()) graph.weldTolerance = 1e-6 * norm(bounds.extent());
 
+    std::span<const Vec3> points = s.points;
+    std::vector<Vec3> joined;
+    if (!lines.points.empty()) { // else a large soup is not copied
+        joined = s.points;
+        joined.insert(joined.end(), lines.points.begin(), lines.points.end());
+        for (std::size_t i = s.points.size(); i < joined.size(); ++i) used.push_back(static_cast<std::uint32_t>(i));
+        points = joined;
+    }
     FeatureSoup soup;
-    std::vector<std::uint32_t> target = weldTargets(s, used, graph.weldTolerance, bounds);
-    numberPoints(s, target, soup);
-    graph.weldedPoints = soup.points.size();
+    std::vector<std::uint32_t> target = weldTargets(points, used, graph.weldTolerance, bounds);
+    graph.weldedPoints = numberPoints(points, s.points.size(), target, soup);
+    takeLines(lines, std::span(target).subspan(s.points.size()), soup);
 
     std::vector<SortedCorners> sorted(s.triangles.size());
     parallelFor(sorted.size(), [&](std::size_t t) {

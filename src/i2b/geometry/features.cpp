@@ -5,12 +5,14 @@
 //               of its two short ones
 //   4. sides    (edge, triangle, direction of the triangle away from the edge), sorted by edge
 //   5. judge    each edge by the fold between the directions
-//   6. corners  where lines end, meet or turn                                                    feature_corners.cpp
-//   7. keep     and number what is a feature
+//   6. name     the lines from files; inside boxes the edges that boxes ask for                  named_features.cpp
+//   7. corners  where lines end, meet or turn                                                    feature_corners.cpp
+//   8. keep     and number what is of any kind
 #include "i2b/geometry/features.h"
 #include "i2b/core/checksum.h"
 #include "i2b/geometry/feature_corners.h"
 #include "i2b/geometry/feature_edges.h"
+#include "i2b/geometry/named_features.h"
 #include <fmt/format.h>
 
 namespace i2b {
@@ -18,16 +20,29 @@ namespace {
 
 constexpr std::uint32_t none = ~0u;
 
+// Facts about the soup, before boxes cut its edges.
+void countFaults(const FeatureSoup& soup, const std::vector<FeatureEdge>& all, FeatureGraph& graph) {
+    for (const FeatureEdge& e : all) {
+        if (e.kinds & bitOf(EdgeKind::free))
+            ++graph.openEdges, graph.openEdgeLength += norm(soup.points[e.b] - soup.points[e.a]);
+        if (e.kinds & bitOf(EdgeKind::nonManifold)) ++graph.nonManifoldEdges;
+    }
+}
+
+void countLines(FeatureGraph& graph) {
+    for (const FeatureEdge& e : graph.edges) {
+        const double length = norm(graph.points[e.b] - graph.points[e.a]);
+        if (e.kinds & bitOf(EdgeKind::sharp)) ++graph.sharpEdges, graph.sharpEdgeLength += length;
+        if (e.kinds & bitOf(EdgeKind::named)) ++graph.namedEdges, graph.namedEdgeLength += length;
+    }
+}
+
 void keepFeatures(const FeatureSoup& soup, const std::vector<FeatureEdge>& all,
                   const std::vector<std::uint32_t>& corners, FeatureGraph& graph) {
     std::vector<std::uint32_t> number(soup.points.size(), none);
-    for (const FeatureEdge& e : all) {
-        const double length = norm(soup.points[e.b] - soup.points[e.a]);
-        if (e.kinds & bitOf(EdgeKind::free)) ++graph.openEdges, graph.openEdgeLength += length;
-        if (e.kinds & bitOf(EdgeKind::nonManifold)) ++graph.nonManifoldEdges;
-        if (e.kinds & bitOf(EdgeKind::sharp)) ++graph.sharpEdges, graph.sharpEdgeLength += length;
+    for (const FeatureEdge& e : all)
         if (e.kinds != 0) number[e.a] = number[e.b] = 0;
-    }
+    for (const std::uint32_t c : corners) number[c] = 0;
     for (std::size_t i = 0; i < number.size(); ++i) {
         if (number[i] == none) continue;
         number[i] = static_cast<std::uint32_t>(graph.points.size());
@@ -47,9 +62,17 @@ void keepFeatures(const FeatureSoup& soup, const std::vector<FeatureEdge>& all,
 FeatureGraph buildFeatureGraph(const Surface& surface, const FeatureOptions& options) {
     FeatureGraph graph;
     graph.weldTolerance = options.weldTolerance;
-    const FeatureSoup soup = weldSoup(surface, graph);
-    const std::vector<FeatureEdge> all = judgeEdges(soup, options.angle, graph);
-    keepFeatures(soup, all, findCorners(soup.points, all, options.angle), graph);
+    FeatureSoup soup = weldSoup(surface, options.lines, graph);
+    std::vector<FeatureEdge> all =
+        judgeEdges(soup, options.angle, namedParts(surface.parts, options.parts, graph.notes), graph);
+    countFaults(soup, all, graph);
+    addLines(soup, all);
+    applyBoxes(options.boxes, graph.weldTolerance, soup, all);
+    std::vector<std::uint32_t> corners = findCorners(soup.points, all, options.angle);
+    addCorners(soup.corners, corners);
+    keepFeatures(soup, all, corners, graph);
+    countLines(graph);
+    noteFarLines(surface, options.lines, graph.notes);
     return graph;
 }
 
@@ -60,7 +83,7 @@ std::string FeatureGraph::validate() const {
         const FeatureEdge& e = edges[i];
         if (e.a >= e.b || e.b >= points.size())
             return fmt::format("feature edge {} runs from point {} to {} of {}", i, e.a, e.b, points.size());
-        if (e.kinds == 0 || e.kinds > 15) return fmt::format("feature edge {} has kinds {}", i, e.kinds);
+        if (e.kinds == 0 || e.kinds > 31) return fmt::format("feature edge {} has kinds {}", i, e.kinds);
         if (!(e.angle >= 0 && e.angle <= 180)) return fmt::format("feature edge {} has angle {}", i, e.angle);
         if (i > 0 && !(std::pair{edges[i - 1].a, edges[i - 1].b} < std::pair{e.a, e.b}))
             return fmt::format("feature edge {} is out of order", i);
@@ -84,7 +107,8 @@ std::uint64_t FeatureGraph::checksum() const {
     }
     c.add(std::span<const std::uint32_t>(corners));
     for (const std::uint64_t n :
-         {weldedPoints, duplicateTriangles, degenerateTriangles, openEdges, nonManifoldEdges, sharpEdges})
+         {weldedPoints, duplicateTriangles, degenerateTriangles, openEdges, nonManifoldEdges, sharpEdges,
+          namedEdges})
         c.add(n);
     return c.value();
 }
