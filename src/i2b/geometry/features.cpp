@@ -59,6 +59,10 @@ void keepFeatures(const FeatureSoup& soup, const std::vector<FeatureEdge>& all,
 
 } // namespace
 
+FeatureOptions featureOptions(const GeometryOptions& geometry, const FeatureLines& lines) {
+    return {geometry.featureAngle, 0, geometry.featureParts, geometry.featureBoxes, lines};
+}
+
 FeatureGraph buildFeatureGraph(const Surface& surface, const FeatureOptions& options) {
     FeatureGraph graph;
     graph.weldTolerance = options.weldTolerance;

@@ -24,6 +24,9 @@ struct FeatureOptions {
     FeatureLines lines = {}; // features wherever they are; no box takes them away
 };
 
+// What the options of a run ask for; lines: what their files hold.
+FeatureOptions featureOptions(const GeometryOptions& geometry, const FeatureLines& lines);
+
 inline constexpr double boxAngle = 1; // degrees; flat faces of single-precision triangles fold by less
 
 enum class EdgeKind : std::uint8_t {

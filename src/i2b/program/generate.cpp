@@ -50,7 +50,12 @@ std::unique_ptr<GridResult> generateGrid(const Options& options, Context& contex
     auto out = std::make_unique<GridResult>();
     GridResult& r = *out;
     r.surface = stage(
-        context, "read", [&] { return readSurface(options.geometry.files, options.geometry.scale, r.notes); },
+        context, "read",
+        [&] {
+            const GeometryOptions& g = options.geometry;
+            r.featureLines = readFeatureLines(g.featureLines, g.scale, r.notes.messages);
+            return readSurface(g.files, g.scale, r.notes);
+        },
         [](const Surface& s) { return s.triangles.size(); });
     r.field = stage(
         context, "size", [&] { return makeSizeField(r.surface, options.size, options.domain); },
@@ -101,12 +106,10 @@ MeshResult generate(const Options& options, Context& context) {
     requireValid(front.validate(), "front");
     const FeatureGraph features = stage(
         context, "features",
-        [&] {
-            FeatureOptions f;
-            f.angle = options.geometry.featureAngle;
-            return buildFeatureGraph(c.surface, f);
-        },
+        [&] { return buildFeatureGraph(c.surface, featureOptions(options.geometry, c.featureLines)); },
         [](const FeatureGraph& f) { return f.edges.size(); });
+    std::vector<std::string>& notes = out.cartesian->notes.messages;
+    notes.insert(notes.end(), features.notes.begin(), features.notes.end());
     stage(
         context, "fit",
         [&] { return fitFront(front, *lattice, *c.index, features, options.fit, context); },
