@@ -8,8 +8,10 @@ namespace {
 struct Meeting {
     std::uint32_t lines = 0; // edges of lineKinds
     bool named = false;      // one of them by the user
-    Vec3 first, second; // directions of two of them
-    bool continued = false; // one sharp edge, but a milder fold goes straight on: a bend that fades, no corner
+    bool rim = false;        // one of them a rim
+    Vec3 first, second;      // directions of two of them
+    // One edge only, but a milder fold goes straight on, or behind a rim a crack: a line that fades, no corner.
+    bool continued = false;
 };
 
 // A tessellated radius folds by a little more here, a little less there than the limit. Its line is cut in
@@ -17,11 +19,12 @@ struct Meeting {
 void markContinued(const std::vector<Vec3>& points, const std::vector<FeatureEdge>& all, double limit,
                    std::vector<Meeting>& meetings) {
     for (const FeatureEdge& e : all) {
-        if ((e.kinds & lineKinds) || e.angle < limit / 2) continue;
+        const bool isFree = e.kinds & bitOf(EdgeKind::free);
+        if ((e.kinds & lineKinds) || (e.angle < limit / 2 && !isFree)) continue;
         const Vec3 d = normalized(points[e.b] - points[e.a]);
         for (const auto& [point, away] : {std::pair{e.a, d}, std::pair{e.b, -d}}) {
             Meeting& m = meetings[point];
-            if (m.lines == 1 && !m.named && fold(m.first, away) <= limit) m.continued = true;
+            if (m.lines == 1 && !m.named && m.rim == isFree && fold(m.first, away) <= limit) m.continued = true;
         }
     }
 }
@@ -37,6 +40,7 @@ std::vector<std::uint32_t> findCorners(const std::vector<Vec3>& points, const st
         for (const auto& [point, away] : {std::pair{e.a, d}, std::pair{e.b, -d}}) {
             Meeting& m = meetings[point];
             (m.lines++ == 0 ? m.first : m.second) = away;
+            m.rim = m.rim || (e.kinds & bitOf(EdgeKind::rim));
             m.named = m.named || (e.kinds & bitOf(EdgeKind::named));
         }
     }

@@ -87,7 +87,7 @@ std::string FeatureGraph::validate() const {
         const FeatureEdge& e = edges[i];
         if (e.a >= e.b || e.b >= points.size())
             return fmt::format("feature edge {} runs from point {} to {} of {}", i, e.a, e.b, points.size());
-        if (e.kinds == 0 || e.kinds > 31) return fmt::format("feature edge {} has kinds {}", i, e.kinds);
+        if (e.kinds == 0 || e.kinds > 63) return fmt::format("feature edge {} has kinds {}", i, e.kinds);
         if (!(e.angle >= 0 && e.angle <= 180)) return fmt::format("feature edge {} has angle {}", i, e.angle);
         if (i > 0 && !(std::pair{edges[i - 1].a, edges[i - 1].b} < std::pair{e.a, e.b}))
             return fmt::format("feature edge {} is out of order", i);
@@ -112,7 +112,7 @@ std::uint64_t FeatureGraph::checksum() const {
     c.add(std::span<const std::uint32_t>(corners));
     for (const std::uint64_t n :
          {weldedPoints, duplicateTriangles, degenerateTriangles, openEdges, nonManifoldEdges, sharpEdges,
-          namedEdges})
+          namedEdges, rimEdges})
         c.add(n);
     return c.value();
 }

@@ -34,13 +34,14 @@ enum class EdgeKind : std::uint8_t {
     free = 2,        // one triangle only: the border of an open sheet, or of a crack
     nonManifold = 4, // three or more triangles
     partBorder = 8,  // triangles of different parts
-    named = 16       // named by the user: a line from a file, or what bounds a named part
+    named = 16,      // named by the user: a line from a file, or what bounds a named part
+    rim = 32         // free, and the sheet ends there in the open; see markRims() in rims.h
 };
 
 constexpr std::uint8_t bitOf(EdgeKind kind) { return static_cast<std::uint8_t>(kind); }
 
 // The kinds that a mesh should have an edge along; the others are facts about the soup.
-inline constexpr std::uint8_t lineKinds = bitOf(EdgeKind::sharp) | bitOf(EdgeKind::named);
+inline constexpr std::uint8_t lineKinds = bitOf(EdgeKind::sharp) | bitOf(EdgeKind::named) | bitOf(EdgeKind::rim);
 
 struct FeatureEdge {
     std::uint32_t a = 0, b = 0; // into FeatureGraph::points
@@ -57,13 +58,14 @@ struct FeatureGraph {
     std::vector<FeatureEdge> edges; // a < b, ascending
     // Points where not exactly two edges of lineKinds meet, or they turn over the angle, and the points of
     // FeatureLines; ascending. The end of a sharp line that a fold of at least half the angle continues is none:
-    // there a bend fades, or a radius is tessellated unevenly. The end of a named line is one.
+    // there a bend fades, or a radius is tessellated unevenly. So is the end of a rim that goes on as a crack. The end
+    // of a named line is a corner.
     std::vector<std::uint32_t> corners;
     // Counts over the whole welded soup, features or not. Degenerate: welded to two points or one, or lower
     // than the tolerance; such a needle's neighbours count as neighbours of each other.
     std::uint64_t weldedPoints = 0, duplicateTriangles = 0, degenerateTriangles = 0;
-    std::uint64_t openEdges = 0, nonManifoldEdges = 0, sharpEdges = 0, namedEdges = 0;
-    double openEdgeLength = 0, sharpEdgeLength = 0, namedEdgeLength = 0; // m
+    std::uint64_t openEdges = 0, nonManifoldEdges = 0, sharpEdges = 0, namedEdges = 0, rimEdges = 0;
+    double openEdgeLength = 0, sharpEdgeLength = 0, namedEdgeLength = 0, rimEdgeLength = 0; // m
     std::vector<std::string> notes; // one sentence each: what was named and is not there
 
     std::string validate() const;

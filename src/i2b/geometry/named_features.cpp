@@ -60,17 +60,23 @@ std::vector<Piece> piecesOf(const Vec3& a, const Vec3& b, const std::vector<Feat
     return pieces;
 }
 
+double angleBy(BoxEdges rule) { return rule == BoxEdges::all ? boxAngle : 180; }
+
 void judgeBy(const Rule& rule, FeatureEdge& edge) {
     if (!rule) return; // as the angle says
-    const double limit = *rule == BoxEdges::all ? boxAngle : 180;
     edge.kinds &= static_cast<std::uint8_t>(~bitOf(EdgeKind::sharp));
-    if (double(edge.angle) > limit) edge.kinds |= bitOf(EdgeKind::sharp);
+    if (double(edge.angle) > angleBy(*rule)) edge.kinds |= bitOf(EdgeKind::sharp);
     if (*rule == BoxEdges::none) edge.kinds &= static_cast<std::uint8_t>(~bitOf(EdgeKind::named));
 }
 
 bool before(const FeatureEdge& x, const FeatureEdge& y) { return EdgeKey{x.a, x.b} < EdgeKey{y.a, y.b}; }
 
 } // namespace
+
+double angleAt(const FeatureOptions& options, const Vec3& p) {
+    const Rule rule = ruleAt(options.boxes, p);
+    return rule ? angleBy(*rule) : options.angle;
+}
 
 std::vector<bool> namedParts(const std::vector<Part>& parts, const std::vector<std::string>& names,
                              std::vector<std::string>& notes) {

@@ -4,6 +4,9 @@
 
 namespace i2b {
 
+// Degrees above which an edge at p is sharp: inside boxes what the last one says.
+double angleAt(const FeatureOptions& options, const Vec3& p);
+
 // Per part whether one of the names means it. A name without a part is noted.
 std::vector<bool> namedParts(const std::vector<Part>& parts, const std::vector<std::string>& names,
                              std::vector<std::string>& notes);

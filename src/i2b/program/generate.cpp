@@ -7,6 +7,7 @@
 #include "i2b/fit/fit.h"
 #include "i2b/front/front.h"
 #include "i2b/geometry/features.h"
+#include "i2b/geometry/rims.h"
 #include "i2b/grid/build.h"
 #include "i2b/grid/cut.h"
 #include "i2b/layers/layer_stack.h"
@@ -106,7 +107,13 @@ MeshResult generate(const Options& options, Context& context) {
     requireValid(front.validate(), "front");
     const FeatureGraph features = stage(
         context, "features",
-        [&] { return buildFeatureGraph(c.surface, featureOptions(options.geometry, c.featureLines)); },
+        [&] {
+            const FeatureOptions f = featureOptions(options.geometry, c.featureLines);
+            FeatureGraph graph = buildFeatureGraph(c.surface, f);
+            // A wall that comes as near to a rim leaves no row of uncut cells for a mesh to wrap round it.
+            markRims(graph, *c.index, f, 2 * options.size.surface);
+            return graph;
+        },
         [](const FeatureGraph& f) { return f.edges.size(); });
     std::vector<std::string>& notes = out.cartesian->notes.messages;
     notes.insert(notes.end(), features.notes.begin(), features.notes.end());
