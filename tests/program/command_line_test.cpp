@@ -277,6 +277,10 @@ TEST(CommandLine, ReadsInspectCheckAndSample) {
     EXPECT_EQ(check.caseFolder, "case");
     EXPECT_THAT(check.given.options.geometry.files, ElementsAre("a.stl", "b.stl"));
     EXPECT_EQ(check.given.options.threads, 1);
+    EXPECT_THAT(check.patches, ElementsAre());
+    EXPECT_THAT(parseCommandLine({"check", "--geometry", "a.stl", "--patch", "w{1,2}", "--patch", "b", "case"}).patches,
+                ElementsAre("w{1,2}", "b"));
+    EXPECT_THAT(complaint({"check", "case", "--patch", "b"}), HasSubstr("--geometry"));
     const CommandLine sample = parseCommandLine({"sample", "engine", "-o", "engine.stl"});
     EXPECT_EQ(sample.command, Command::sample);
     EXPECT_EQ(sample.sample, "engine");

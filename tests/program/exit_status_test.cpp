@@ -109,6 +109,12 @@ TEST_F(ExitStatus, MeshSucceeds) {
     EXPECT_EQ(check.status, 0) << check.text;
     EXPECT_THAT(check.text, AllOf(HasSubstr("non-orthogonality"), HasSubstr("sphere")));
     EXPECT_THAT(run("check case --geometry sphere.stl").text, HasSubstr("Fit to the geometry"));
+    const Outcome patch = run("check case --geometry sphere.stl --patch 'sph.*'");
+    EXPECT_EQ(patch.status, 0);
+    EXPECT_THAT(patch.text, HasSubstr("Fit to the geometry"));
+    const Outcome none = run("check case --geometry sphere.stl --patch ball");
+    EXPECT_EQ(none.status, 2);
+    EXPECT_THAT(none.text, AllOf(HasSubstr("'ball' (--patch)"), HasSubstr("sphere")));
 }
 
 // Quiet means quiet; regions lists a seed that mesh takes.

@@ -114,6 +114,12 @@ struct Parser {
         check.add_option("case", line.caseFolder, "The OpenFOAM case, or its polyMesh folder")->required();
         check.add_option("--geometry", files, "Measure also how well the walls fit these files")
             ->type_name("FILE...");
+        check.add_option("--patch", line.patches, "Of the fit: this patch alone (whole name or regular expression); repeatable")
+            ->type_name("NAME")
+            ->expected(1)
+            ->allow_extra_args(false)
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+            ->needs("--geometry");
         addShared(check, {"scale", "feature-angle", "threads", "quiet"});
         CLI::App& sample =
             command("sample", "Write a built-in geometry; without a name, list them", Command::sample);
