@@ -1,5 +1,5 @@
-// Proves: the rim of a sheet that ends in the open is found whole, with its corners; cracks, overlaps and feet of sheets
-// that stand on others are told from it at the scale asked for.
+// Proves: the rim of a sheet that ends in the open is found whole, with its corners; cracks, overlaps and feet of
+// sheets that stand on others are told from it at the scale asked for.
 #include "geometry_files.h"
 #include "i2b/geometry/rims.h"
 #include "soups.h"
@@ -22,7 +22,8 @@ FeatureGraph graphOf(const Surface& s, double gap, const FeatureOptions& options
     EXPECT_EQ(g.validate(), "");
     EXPECT_EQ(g.rimEdges, count(g, EdgeKind::rim));
     EXPECT_NEAR(g.rimEdgeLength, length(g, EdgeKind::rim), 1e-9);
-    for (const FeatureEdge& e : g.edges) EXPECT_TRUE(!(e.kinds & bitOf(EdgeKind::rim)) || (e.kinds & bitOf(EdgeKind::free)));
+    for (const FeatureEdge& e : g.edges)
+        EXPECT_TRUE(!(e.kinds & bitOf(EdgeKind::rim)) || (e.kinds & bitOf(EdgeKind::free)));
     return g;
 }
 
@@ -115,7 +116,8 @@ TEST(Rims, overlaps) {
     addSheet(s, 5, [](double u, double v) { return Vec3{u, v, 0}; });
     addSheet(s, 5, [](double u, double v) { return Vec3{0.9 + u, v, 0.01}; });
     const FeatureGraph g = graphOf(s, 0.05);
-    EXPECT_NEAR(lengthAt(g, [](const Vec3& p) { return p.x > 0.89 && p.x < 1.01 && p.y > 0.01 && p.y < 0.99; }), 0, 1e-9);
+    const auto together = [](const Vec3& p) { return p.x > 0.89 && p.x < 1.01 && p.y > 0.01 && p.y < 0.99; };
+    EXPECT_NEAR(lengthAt(g, together), 0, 1e-9);
     Surface decal;
     addSheet(decal, 2, [](double u, double v) { return Vec3{4 * u - 2, 4 * v - 2, 0}; });
     addSheet(decal, 3, [](double u, double v) { return Vec3{0.5 * u, 0.5 * v, 0.01}; });

@@ -54,6 +54,10 @@ TEST_F(ExitStatus, MissingGeometryIsOne) {
     EXPECT_EQ(inspect.status, 1);
     EXPECT_THAT(inspect.text, HasSubstr("nowhere.stl"));
     EXPECT_EQ(run("check nowhere").status, 1);
+    ASSERT_EQ(run("sample sphere -o sphere.stl").status, 0);
+    const Outcome lines = run("mesh sphere.stl --size 0.2 --feature-lines nowhere.obj");
+    EXPECT_EQ(lines.status, 1);
+    EXPECT_THAT(lines.text, HasSubstr("nowhere.obj"));
     std::ofstream(folder_ / "empty.stl") << "";
     EXPECT_EQ(run("inspect empty.stl").status, 1);
 }

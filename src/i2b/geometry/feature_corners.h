@@ -6,8 +6,8 @@
 
 namespace i2b {
 
-// Of the points, ascending; see FeatureGraph::corners. all: edges between the points, those without a kind too: a milder
-// fold may continue a line. limit: degrees.
+// Of the points, ascending; see FeatureGraph::corners. all: edges between the points, those without a kind too: a
+// milder fold may continue a line. limit: degrees.
 std::vector<std::uint32_t> findCorners(const std::vector<Vec3>& points, const std::vector<FeatureEdge>& all,
                                        double limit);
 

@@ -11,8 +11,8 @@ double angleAt(const FeatureOptions& options, const Vec3& p);
 std::vector<bool> namedParts(const std::vector<Part>& parts, const std::vector<std::string>& names,
                              std::vector<std::string>& notes);
 
-// Names the edges that the soup's lines run along, and adds those that no triangle has. edges: a < b, ascending, before
-// and after.
+// Names the edges that the soup's lines run along, and adds those that no triangle has. edges: a < b, ascending,
+// before and after.
 void addLines(const FeatureSoup& soup, std::vector<FeatureEdge>& edges);
 
 // Judges the edges inside boxes anew, by the last box that holds them; where boxes of different kinds begin or end

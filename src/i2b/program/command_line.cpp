@@ -109,12 +109,15 @@ struct Parser {
         addMesher("regions", "Show what would be painted: regions, seeds, leaks; with --out, also as grid.vdb", Command::regions);
         CLI::App& inspect = command("inspect", "Show what the geometry holds", Command::inspect);
         inspect.add_option("files", files, "The geometry files")->type_name("FILE")->required();
-        addShared(inspect, {"scale", "feature-angle", "feature-lines", "feature-part", "feature-box", "threads", "quiet"});
+        addShared(inspect, {"scale", "feature-angle", "feature-lines", "feature-part", "feature-box", "threads",
+                            "quiet"});
         CLI::App& check = command("check", "Measure the quality of any OpenFOAM polyMesh", Command::check);
         check.add_option("case", line.caseFolder, "The OpenFOAM case, or its polyMesh folder")->required();
         check.add_option("--geometry", files, "Measure also how well the walls fit these files")
             ->type_name("FILE...");
-        check.add_option("--patch", line.patches, "Of the fit: this patch alone (whole name or regular expression); repeatable")
+        check
+            .add_option("--patch", line.patches,
+                        "Of the fit: this patch alone (whole name or regular expression); repeatable")
             ->type_name("NAME")
             ->expected(1)
             ->allow_extra_args(false)
