@@ -9,10 +9,20 @@
 
 namespace i2b {
 
+enum class BoxEdges : std::uint8_t { none, all };
+
+struct FeatureBox {
+    Box box;                             // m
+    BoxEdges edges = BoxEdges::none;     // all: edges of over one degree inside are features; none: no edge is
+};
+
 struct GeometryOptions {
     std::vector<std::string> files;
     double scale = 1;                    // file unit to metres
-    double featureAngle = 40;            // degrees; 180: no features
+    double featureAngle = 40;            // degrees; 180: no features but those named below
+    std::vector<std::string> featureLines{}; // OBJ files of lines and corners, in the unit of the geometry
+    std::vector<std::string> featureParts{}; // names or regular expressions (whole name): their free edges and borders
+    std::vector<FeatureBox> featureBoxes{};  // of boxes that overlap the last one counts
 };
 
 // One size for all axes.

@@ -2,6 +2,7 @@
 // input is.
 #include "geometry_files.h"
 #include "i2b/geometry/features.h"
+#include "soups.h"
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <numbers>
@@ -11,40 +12,18 @@
 namespace i2b {
 namespace {
 
-constexpr auto sharp = static_cast<std::uint8_t>(EdgeKind::sharp),
-               open = static_cast<std::uint8_t>(EdgeKind::free),
-               nonManifold = static_cast<std::uint8_t>(EdgeKind::nonManifold),
-               border = static_cast<std::uint8_t>(EdgeKind::partBorder);
+using test::addCube;
+using test::addQuad;
+using test::addTriangle;
+using test::count;
 
-// Every triangle with its own three points, as STL has them.
-void addTriangle(Surface& s, const Vec3& a, const Vec3& b, const Vec3& c, std::int32_t part = 0) {
-    const auto n = static_cast<std::uint32_t>(s.points.size());
-    s.points.insert(s.points.end(), {a, b, c});
-    s.triangles.push_back({n, n + 1, n + 2});
-    s.partOf.push_back(part);
-}
-
-void addQuad(Surface& s, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, std::int32_t part = 0) {
-    addTriangle(s, a, b, c, part);
-    addTriangle(s, a, c, d, part);
-}
-
-void addCube(Surface& s, const Vec3& at, std::int32_t part = 0) {
-    const auto p = [&](int i) { return at + Vec3{double(i & 1), double(i >> 1 & 1), double(i >> 2 & 1)}; };
-    const int faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
-                             {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-    for (const auto& f : faces) addQuad(s, p(f[0]), p(f[1]), p(f[2]), p(f[3]), part);
-}
+constexpr auto sharp = EdgeKind::sharp, open = EdgeKind::free, nonManifold = EdgeKind::nonManifold,
+               border = EdgeKind::partBorder;
 
 FeatureGraph graphOf(const Surface& s, double angle = 40, double tolerance = 0) {
     const FeatureGraph g = buildFeatureGraph(s, {angle, tolerance});
     EXPECT_EQ(g.validate(), "");
     return g;
-}
-
-std::size_t count(const FeatureGraph& g, std::uint8_t kind) {
-    return static_cast<std::size_t>(std::count_if(
-        g.edges.begin(), g.edges.end(), [&](const FeatureEdge& e) { return (e.kinds & kind) != 0; }));
 }
 
 void expectCube(const FeatureGraph& g) {
@@ -56,7 +35,7 @@ void expectCube(const FeatureGraph& g) {
     EXPECT_NEAR(g.sharpEdgeLength, 12, 1e-9);
     EXPECT_EQ(g.openEdges, 0u);
     for (const FeatureEdge& e : g.edges) {
-        EXPECT_EQ(e.kinds, sharp);
+        EXPECT_EQ(e.kinds, bitOf(sharp));
         EXPECT_NEAR(e.angle, 90, 1e-4);
     }
 }

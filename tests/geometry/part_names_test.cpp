@@ -39,5 +39,15 @@ TEST(PartNames, Unique) {
     EXPECT_THAT(names, testing::ElementsAre("a", "a_3", "a_2", "b", "a_4"));
 }
 
+// A name means itself, even where it would mean more as an expression; an expression must match the whole name.
+TEST(NamePattern, namesAndExpressions) {
+    EXPECT_TRUE(NamePattern("wheel").matches("wheel"));
+    EXPECT_FALSE(NamePattern("wheel").matches("wheel_2"));
+    EXPECT_TRUE(NamePattern("wheel.*").matches("wheel_2"));
+    EXPECT_TRUE(NamePattern("fin{1,2}").matches("finn"));
+    EXPECT_TRUE(NamePattern("a+b").matches("a+b"));
+    EXPECT_THROW(NamePattern("wheel("), std::regex_error);
+}
+
 } // namespace
 } // namespace i2b

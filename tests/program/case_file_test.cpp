@@ -16,7 +16,12 @@ using ::testing::HasSubstr;
 Case everything() {
     Case c;
     Options& o = c.options;
-    o.geometry = {{"a \"quoted\".stl", "dir/b.obj"}, 0.001, 1.0 / 3};
+    o.geometry = {{"a \"quoted\".stl", "dir/b.obj"},
+                  0.001,
+                  1.0 / 3,
+                  {"edges.obj", "dir/more, edges.obj"},
+                  {"fin{1,2}", "body"},
+                  {{{{-1, -2, -3}, {4, 5, 1.0 / 3}}, BoxEdges::all}, {{{0, 0, 0}, {1, 1, 1}}, BoxEdges::none}}};
     o.size.surface = 0.1;
     o.size.max = 1e22;
     o.size.min = 1e-7;
@@ -56,6 +61,9 @@ void expectSame(const Options& a, const Options& b) {
     EXPECT_EQ(a.geometry.files, b.geometry.files);
     EXPECT_EQ(a.geometry.scale, b.geometry.scale);
     EXPECT_EQ(a.geometry.featureAngle, b.geometry.featureAngle);
+    EXPECT_EQ(a.geometry.featureLines, b.geometry.featureLines);
+    EXPECT_EQ(a.geometry.featureParts, b.geometry.featureParts);
+    expectSameItems(a.geometry.featureBoxes, b.geometry.featureBoxes);
     EXPECT_EQ(a.size.surface, b.size.surface);
     EXPECT_EQ(a.size.max, b.size.max);
     EXPECT_EQ(a.size.min, b.size.min);
@@ -189,6 +197,37 @@ TEST(CaseFile, TakesSizesAsTables) {
     EXPECT_EQ(tables.lines.at("max-size"), 4);
     EXPECT_EQ(tables.lines.at("part-size"), 9);
     expectSame(parseCase(formatCase(tables), "").options, tables.options);
+}
+
+// So may features; their files are relative to the case file, one text stands for a list of one.
+TEST(CaseFile, TakesFeaturesAsTable) {
+    const Case tables = parseCase("size = 1\n[feature]\nangle = 30\nlines = ['a.obj', '/data/b.obj']\npart = 'door'\n"
+                                  "[[feature.box]]\nbox = [0, 0, 0, 1, 1, 1]\nedges = 'all'\n"
+                                  "[[feature.box]]\nbox = [0, 0, 0, 2, 1, 1]\nedges = 'none'\n",
+                                  "cases/car.toml");
+    const Case flat = parseCase("size = 1\nfeature-angle = 30\nfeature-lines = ['a.obj', '/data/b.obj']\n"
+                                "feature-part = ['door']\n"
+                                "feature-box = [{ box = [0, 0, 0, 1, 1, 1], edges = 'all' },"
+                                " { box = [0, 0, 0, 2, 1, 1], edges = 'none' }]\n",
+                                "cases/car.toml");
+    expectSame(tables.options, flat.options);
+    EXPECT_THAT(tables.options.geometry.featureLines, ::testing::ElementsAre("cases/a.obj", "/data/b.obj"));
+    EXPECT_EQ(tables.options.geometry.featureBoxes.at(0).edges, BoxEdges::all);
+    EXPECT_EQ(tables.lines.at("feature-lines"), 4);
+    EXPECT_EQ(tables.lines.at("feature-box"), 6);
+    expectSame(parseCase(formatCase(tables), "").options, tables.options);
+}
+
+TEST(CaseFile, NamesFileLineAndKeyOfFeatures) {
+    EXPECT_THAT(complaint("[feature]\nlins = 'a'"), AllOf(HasSubstr("car.toml:2, key feature.lins"), HasSubstr("write lines")));
+    EXPECT_THAT(complaint("[feature]\nsize = 1"), AllOf(HasSubstr("car.toml:2"), HasSubstr("the table [feature]")));
+    EXPECT_THAT(complaint("[feature]\nsurface = 1"), AllOf(HasSubstr("unknown key 'feature.surface'"), HasSubstr("car.toml:2")));
+    EXPECT_THAT(complaint("feature-angle = 3\n[feature]\nangle = 4"), AllOf(HasSubstr("car.toml:3"), HasSubstr("line 1")));
+    EXPECT_THAT(complaint("[feature]\npart = [1]"), AllOf(HasSubstr("key feature.part"), HasSubstr("a text in quotes")));
+    EXPECT_THAT(complaint("[[feature.box]]\nbox = [0, 0, 0, 1, 1, 1]\nedges = 'some'"),
+                AllOf(HasSubstr("car.toml:3, key feature.box"), HasSubstr("'some'"), HasSubstr("\"all\" or \"none\"")));
+    EXPECT_THAT(complaint("[[feature.box]]\nbox = [0, 0, 0, 1, 1, 1]"), HasSubstr("edges = ..."));
+    EXPECT_THAT(complaint("feature = 3"), HasSubstr("unknown key 'feature'"));
 }
 
 TEST(CaseFile, NamesFileLineAndKeyInTables) {

@@ -153,6 +153,38 @@ TEST(CommandLine, TakesPlacesWithSizes) {
     EXPECT_THAT(complaint({"mesh", "a.stl", "--band-size"}), HasSubstr("--band-size"));
 }
 
+// Names may hold commas, the word ends a box, nothing behind is swallowed; each replaces the case file's list.
+TEST(CommandLine, TakesFeatures) {
+    const CaseOnDisk file("geometry = 'a.stl'\n[feature]\nlines = 'l.obj'\npart = ['p', 'q']\n"
+                          "[[feature.box]]\nbox = [0, 0, 0, 1, 1, 1]\nedges = 'all'\n");
+    const Arguments features{"--feature-lines", "e 1.obj", "--feature-lines=f,g.obj", "--feature-part", "fin{1,2}",
+                             "--feature-part", "body", "--feature-box", "-1", "0", "0", "1", "1", ".5", "none"};
+    Arguments arguments{"mesh"};
+    arguments.insert(arguments.end(), features.begin(), features.end());
+    arguments.insert(arguments.end(), {"a.stl", "--feature-box=0,0,0,1,1,1,all", "b.stl"});
+    const CommandLine line = parseCommandLine(arguments);
+    const GeometryOptions& g = line.given.options.geometry;
+    EXPECT_THAT(g.files, ElementsAre("a.stl", "b.stl"));
+    EXPECT_THAT(g.featureLines, ElementsAre("e 1.obj", "f,g.obj"));
+    EXPECT_THAT(g.featureParts, ElementsAre("fin{1,2}", "body"));
+    ASSERT_EQ(g.featureBoxes.size(), 2u);
+    EXPECT_EQ(g.featureBoxes[0].box, (Box{{-1, 0, 0}, {1, 1, 0.5}}));
+    EXPECT_EQ(g.featureBoxes[0].edges, BoxEdges::none);
+    EXPECT_EQ(g.featureBoxes[1].edges, BoxEdges::all);
+    EXPECT_EQ(parseCase(formatCase(line.given), "").options.geometry.featureParts, g.featureParts);
+    arguments = {"mesh", file.path};
+    arguments.insert(arguments.end(), features.begin(), features.end());
+    const GeometryOptions over = parseCommandLine(arguments).given.options.geometry;
+    EXPECT_THAT(over.featureLines, ElementsAre("e 1.obj", "f,g.obj"));
+    EXPECT_THAT(over.featureParts, ElementsAre("fin{1,2}", "body"));
+    EXPECT_EQ(over.featureBoxes.size(), 1u);
+    EXPECT_EQ(parseCommandLine({"inspect", "a.stl", "--feature-part", "b"}).given.options.geometry.featureParts.size(), 1u);
+    EXPECT_THAT(complaint({"mesh", "--feature-box", "0", "0", "0", "1", "1", "1", "a.stl"}),
+                AllOf(HasSubstr("--feature-box"), HasSubstr("'a.stl' is neither all nor none")));
+    EXPECT_THAT(complaint({"mesh", "a.stl", "--feature-box", "0", "0", "1"}), HasSubstr("neither all nor none"));
+    EXPECT_THAT(complaint({"mesh", "a.stl", "--feature-box=0,0,1,all"}), HasSubstr("3 numbers where 6 are needed"));
+}
+
 // `regions` writes only where the command line itself says so.
 TEST(CommandLine, KnowsWhetherOutWasGiven) {
     const CaseOnDisk file("geometry = 'a.stl'\nsize = 1\nout = 'here'\n");
@@ -245,6 +277,10 @@ TEST(CommandLine, ReadsInspectCheckAndSample) {
     EXPECT_EQ(check.caseFolder, "case");
     EXPECT_THAT(check.given.options.geometry.files, ElementsAre("a.stl", "b.stl"));
     EXPECT_EQ(check.given.options.threads, 1);
+    EXPECT_THAT(check.patches, ElementsAre());
+    EXPECT_THAT(parseCommandLine({"check", "--geometry", "a.stl", "--patch", "w{1,2}", "--patch", "b", "case"}).patches,
+                ElementsAre("w{1,2}", "b"));
+    EXPECT_THAT(complaint({"check", "case", "--patch", "b"}), HasSubstr("--geometry"));
     const CommandLine sample = parseCommandLine({"sample", "engine", "-o", "engine.stl"});
     EXPECT_EQ(sample.command, Command::sample);
     EXPECT_EQ(sample.sample, "engine");

@@ -54,6 +54,10 @@ TEST_F(ExitStatus, MissingGeometryIsOne) {
     EXPECT_EQ(inspect.status, 1);
     EXPECT_THAT(inspect.text, HasSubstr("nowhere.stl"));
     EXPECT_EQ(run("check nowhere").status, 1);
+    ASSERT_EQ(run("sample sphere -o sphere.stl").status, 0);
+    const Outcome lines = run("mesh sphere.stl --size 0.2 --feature-lines nowhere.obj");
+    EXPECT_EQ(lines.status, 1);
+    EXPECT_THAT(lines.text, HasSubstr("nowhere.obj"));
     std::ofstream(folder_ / "empty.stl") << "";
     EXPECT_EQ(run("inspect empty.stl").status, 1);
 }
@@ -109,6 +113,12 @@ TEST_F(ExitStatus, MeshSucceeds) {
     EXPECT_EQ(check.status, 0) << check.text;
     EXPECT_THAT(check.text, AllOf(HasSubstr("non-orthogonality"), HasSubstr("sphere")));
     EXPECT_THAT(run("check case --geometry sphere.stl").text, HasSubstr("Fit to the geometry"));
+    const Outcome patch = run("check case --geometry sphere.stl --patch 'sph.*'");
+    EXPECT_EQ(patch.status, 0);
+    EXPECT_THAT(patch.text, HasSubstr("Fit to the geometry"));
+    const Outcome none = run("check case --geometry sphere.stl --patch ball");
+    EXPECT_EQ(none.status, 2);
+    EXPECT_THAT(none.text, AllOf(HasSubstr("'ball' (--patch)"), HasSubstr("sphere")));
 }
 
 // Quiet means quiet; regions lists a seed that mesh takes.

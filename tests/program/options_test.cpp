@@ -38,6 +38,9 @@ TEST(Validate, NamesEachBrokenOption) {
         {"scale", [](Options& o) { o.geometry.scale = 0; }},
         {"scale", [](Options& o) { o.geometry.scale = -1; }},
         {"feature-angle", [](Options& o) { o.geometry.featureAngle = 181; }},
+        {"feature-lines", [](Options& o) { o.geometry.featureLines = {""}; }},
+        {"feature-part", [](Options& o) { o.geometry.featureParts = {"wheel", "wheel("}; }},
+        {"feature-box", [](Options& o) { o.geometry.featureBoxes = {{{{0, 0, 0}, {1, 1, 0}}, BoxEdges::all}}; }},
         {"size", [](Options& o) { o.size.surface = 0; }},
         {"size", [](Options& o) { o.size.surface = -1; }},
         {"max-size", [](Options& o) { o.size.max = 0.005; }},
@@ -98,7 +101,7 @@ TEST(Validate, NamesEachBrokenOption) {
     }
     Options options = good();
     options.layers.growth = options.size.surface = options.geometry.featureAngle = nan;
-    EXPECT_THAT(keys(options), ElementsAre("feature-angle", "size", "growth"));
+    EXPECT_THAT(keys(options), ElementsAre("size", "feature-angle", "growth"));
 }
 
 // The error names every problem at once, and where each key was set: line of the case file or option.

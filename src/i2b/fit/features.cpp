@@ -185,7 +185,7 @@ FeatureIndex::FeatureIndex(const FeatureGraph& graph) {
     lines_.parts = corners_.parts = {Part{"features", "", 0}};
     lines_.points = corners_.points = graph.points;
     for (const FeatureEdge& e : graph.edges) {
-        if (!(e.kinds & static_cast<std::uint8_t>(EdgeKind::sharp))) continue;
+        if (!(e.kinds & lineKinds)) continue;
         lines_.triangles.push_back({e.a, e.b, e.b});
         lines_.partOf.push_back(0);
     }

@@ -12,7 +12,7 @@
 
 namespace i2b {
 
-// Closest sharp edge and closest corner of a feature graph.
+// Closest line (an edge of lineKinds) and closest corner of a feature graph.
 class FeatureIndex {
   public:
     explicit FeatureIndex(const FeatureGraph& graph);

@@ -49,6 +49,7 @@ std::string format(const InspectReport& r) {
     line("open edges           {}, {} long", r.openEdges, length(r.openEdgeLength));
     line("non-manifold edges   {}, {} long", r.nonManifoldEdges, length(r.nonManifoldEdgeLength));
     line("sharp edges          {}, {} long, {} corners", r.sharpEdges, length(r.sharpEdgeLength), r.corners);
+    if (r.namedEdges > 0) line("named edges          {}, {} long", r.namedEdges, length(r.namedEdgeLength));
     line("suggested size       {:g} m (--size)", r.suggestedSize);
     return text;
 }

@@ -116,6 +116,8 @@ void takeFeatures(const FeatureGraph& f, InspectReport& report) {
     report.openEdges = f.openEdges;
     report.nonManifoldEdges = f.nonManifoldEdges;
     report.sharpEdges = f.sharpEdges;
+    report.namedEdges = f.namedEdges;
+    report.namedEdgeLength = f.namedEdgeLength;
     report.corners = f.corners.size();
     report.openEdgeLength = f.openEdgeLength;
     report.sharpEdgeLength = f.sharpEdgeLength;

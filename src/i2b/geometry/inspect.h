@@ -26,8 +26,8 @@ struct InspectReport {
     // From the FeatureGraph, after welding by its tolerance.
     double weldTolerance = 0; // m
     std::uint64_t weldedPoints = 0, degenerateTriangles = 0, duplicateTriangles = 0;
-    std::uint64_t openEdges = 0, nonManifoldEdges = 0, sharpEdges = 0, partBorderEdges = 0, corners = 0;
-    double openEdgeLength = 0, nonManifoldEdgeLength = 0, sharpEdgeLength = 0; // m
+    std::uint64_t openEdges = 0, nonManifoldEdges = 0, sharpEdges = 0, namedEdges = 0, partBorderEdges = 0, corners = 0;
+    double openEdgeLength = 0, nonManifoldEdgeLength = 0, sharpEdgeLength = 0, namedEdgeLength = 0; // m
     double suggestedSize = 0; // m, d_int for a first mesh; see suggestSize()
 };
 

@@ -77,4 +77,10 @@ void makeUnique(std::vector<std::string>& names) {
     }
 }
 
+NamePattern::NamePattern(const std::string& text) : text_(text), expression_(text, std::regex::ECMAScript) {}
+
+bool NamePattern::matches(const std::string& name) const {
+    return name == text_ || std::regex_match(name, expression_);
+}
+
 } // namespace i2b

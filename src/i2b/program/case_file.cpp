@@ -93,6 +93,11 @@ void read(const Value& v, std::vector<std::string>& field) {
 void readEntry(const Value& v, const toml::node& at, std::string& entry, bool) { entry = v.text(at); }
 void readEntry(const Value& v, const toml::node& at, double& entry, bool) { entry = v.number(at); }
 void readEntry(const Value& v, const toml::node& at, Box& entry, bool) { entry = v.box(at); }
+void readEntry(const Value& v, const toml::node& at, BoxEdges& entry, bool) {
+    const auto edges = boxEdgesNamed(v.text(at));
+    if (!edges) v.refuse(at, fmt::format("'{}' is neither all nor none", v.text(at)), "write \"all\" or \"none\"");
+    entry = *edges;
+}
 void readEntry(const Value& v, const toml::node& at, Vec3& entry, bool size) {
     entry = size ? v.size(at) : v.point(at);
 }
@@ -144,7 +149,7 @@ void readInto(const Value& value, const Setting& setting, Case& target) {
         setting.field);
 }
 
-// Geometry is named relative to the case file, so that a case can be run from anywhere.
+// Files are named relative to the case file, so that a case can be run from anywhere.
 void resolveFiles(std::vector<std::string>& files, const std::string& path) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     for (std::string& file : files) file = (folder / file).string();
@@ -160,6 +165,7 @@ std::string show(double value) { return fmt::format("{}", value); }
 std::string show(int value) { return fmt::format("{}", value); }
 std::string show(bool value) { return value ? "true" : "false"; }
 std::string show(const std::string& value) { return quoted(value); }
+std::string show(BoxEdges edges) { return quoted(std::string(nameOf(edges))); }
 std::string show(const Vec3& p) { return fmt::format("[{}, {}, {}]", p.x, p.y, p.z); }
 std::string show(const Box& b) {
     return fmt::format("[{}, {}, {}, {}, {}, {}]", b.lo.x, b.lo.y, b.lo.z, b.hi.x, b.hi.y, b.hi.z);
@@ -218,16 +224,16 @@ std::string assignment(const Setting& setting, Case& given) {
                 near.empty() ? "i2b mesh --write-case prints all keys" : fmt::format("write {}", near));
 }
 
-// [size] and [[size.box]] and the like: the same settings under shorter names.
-void readSizeTable(const toml::table& sizes, const std::string& path, Case& result) {
-    for (const auto& [key, node] : sizes) {
-        const Setting* const setting = findInSize(key.str());
-        const std::string name = fmt::format("size.{}", key.str());
+// [size], [[size.box]], [feature] and the like: the same settings under shorter names.
+void readTable(std::string_view title, const toml::table& table, const std::string& path, Case& result) {
+    for (const auto& [key, node] : table) {
+        const Setting* const setting = findInTable(title, key.str());
+        const std::string name = fmt::format("{}.{}", title, key.str());
         if (!setting && findSetting(key.str()))
-            throw Error(ErrorKind::usage, fmt::format("the key '{}' has no place in the table [size]", key.str()),
+            throw Error(ErrorKind::usage, fmt::format("the key '{}' has no place in the table [{}]", key.str(), title),
                         fmt::format("{}:{}, key {}", path, key.source().begin.line, name),
                         "write it before the first table");
-        if (!setting) refuseKey(key, name, path, nearestInSize(key.str()));
+        if (!setting) refuseKey(key, name, path, nearestInTable(title, key.str()));
         const auto before = result.lines.find(std::string(setting->key));
         if (before != result.lines.end())
             throw Error(ErrorKind::usage, fmt::format("{} and {} are the same", setting->key, name),
@@ -251,14 +257,16 @@ Case parseCase(std::string_view text, const std::string& path) {
     Case result;
     result.file = path;
     for (const auto& [key, node] : table) {
-        if (key.str() == "size" && node.is_table()) continue;
+        if (isTable(key.str()) && node.is_table()) continue;
         const Setting* const setting = findSetting(key.str());
         if (!setting) refuseKey(key, key.str(), path, nearestKey(key.str()));
         readInto({node, setting->key, path}, *setting, result);
         result.lines[std::string(setting->key)] = static_cast<int>(key.source().begin.line);
     }
-    if (const toml::table* const sizes = table["size"].as_table()) readSizeTable(*sizes, path, result);
+    for (const auto& [key, node] : table)
+        if (isTable(key.str()) && node.is_table()) readTable(key.str(), *node.as_table(), path, result);
     resolveFiles(result.options.geometry.files, path);
+    resolveFiles(result.options.geometry.featureLines, path);
     return result;
 }
 

@@ -15,6 +15,16 @@
 //   part = "wheel.*"
 //   distance = 0.1
 //   size = 0.005
+//
+// So may features, where angle is feature-angle; files of lines are named relative to the case file, too:
+//
+//   [feature]
+//   angle = 40
+//   lines = ["edges.obj"]
+//   part = ["door", "window.*"]
+//   [[feature.box]]                     # the last one that holds a place decides there
+//   box = [0, -1, 0, 4, 1, 1]
+//   edges = "none"                      # or "all"
 #pragma once
 #include "i2b/program/settings.h"
 #include <string>
@@ -25,7 +35,7 @@ namespace i2b {
 // Throws Error (usage) naming file, line and key: no such file, not TOML, an unknown key, a value of the
 // wrong type.
 Case readCaseFile(const std::string& path);
-// As readCaseFile(), from text; path is for messages and for the folder that geometry is relative to.
+// As readCaseFile(), from text; path is for messages and for the folder that files are relative to.
 Case parseCase(std::string_view text, const std::string& path);
 
 // The complete case file: every key with its meaning. parseCase() of it gives the same options again.

@@ -32,6 +32,8 @@ template <class T>
 struct IsItemList : std::false_type {};
 template <class T>
 struct IsItemList<FieldOf<std::vector<T>>> : std::bool_constant<!std::is_same_v<T, std::string>> {};
+template <>
+struct IsItemList<RepeatedTexts> : std::true_type {};
 
 // Lists that a repeated option adds to.
 bool isRepeatable(const Setting& setting) {
@@ -107,11 +109,20 @@ struct Parser {
         addMesher("regions", "Show what would be painted: regions, seeds, leaks; with --out, also as grid.vdb", Command::regions);
         CLI::App& inspect = command("inspect", "Show what the geometry holds", Command::inspect);
         inspect.add_option("files", files, "The geometry files")->type_name("FILE")->required();
-        addShared(inspect, {"scale", "feature-angle", "threads", "quiet"});
+        addShared(inspect, {"scale", "feature-angle", "feature-lines", "feature-part", "feature-box", "threads",
+                            "quiet"});
         CLI::App& check = command("check", "Measure the quality of any OpenFOAM polyMesh", Command::check);
         check.add_option("case", line.caseFolder, "The OpenFOAM case, or its polyMesh folder")->required();
         check.add_option("--geometry", files, "Measure also how well the walls fit these files")
             ->type_name("FILE...");
+        check
+            .add_option("--patch", line.patches,
+                        "Of the fit: this patch alone (whole name or regular expression); repeatable")
+            ->type_name("NAME")
+            ->expected(1)
+            ->allow_extra_args(false)
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+            ->needs("--geometry");
         addShared(check, {"scale", "feature-angle", "threads", "quiet"});
         CLI::App& sample =
             command("sample", "Write a built-in geometry; without a name, list them", Command::sample);

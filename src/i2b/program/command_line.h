@@ -15,6 +15,7 @@ struct CommandLine {
     bool outGiven = false;  // --out is named on the command line itself
     bool writeCase = false; // mesh, grid, regions: print the case file instead of running
     std::string caseFolder; // check: an OpenFOAM case
+    std::vector<std::string> patches; // check: names or expressions of those whose fit is measured; empty: all walls
     std::string sample;     // sample: the name of a built-in geometry; empty: list them
     std::string sampleFile; // sample: the .stl file to write, or a folder for a file per part
     double dirt = 1;        // sample: scales cracks and overlaps; 0: clean

@@ -120,6 +120,9 @@ struct Visitor {
     Edit operator()(FieldOf<std::vector<std::string>> f) const {
         return set(f, split(text));
     }
+    Edit operator()(RepeatedTexts f) const {
+        return [=, value = text](Case& c) { f(c).push_back(value); };
+    }
     Edit operator()(FieldOf<std::optional<Box>> f) const {
         return set(f, std::optional<Box>(toBox(toNumbers(option, text, 6))));
     }
@@ -133,6 +136,16 @@ struct Visitor {
         requires HasEntries<std::vector<T>>::value
     Edit operator()(FieldOf<std::vector<T>> f) const {
         const T value = toItem<T>(option, text);
+        return [=](Case& c) { f(c).push_back(value); };
+    }
+    Edit operator()(FieldOf<std::vector<FeatureBox>> f) const { // the word comes last
+        const std::size_t comma = text.rfind(',');
+        const std::string word = text.substr(comma == std::string::npos ? 0 : comma + 1);
+        const auto edges = boxEdgesNamed(word);
+        if (!edges)
+            refuse(option, fmt::format("'{}' is neither all nor none", word), "write X0 Y0 Z0 X1 Y1 Z1 all, or none");
+        const std::string numbers = comma == std::string::npos ? "" : text.substr(0, comma);
+        const FeatureBox value{toBox(toNumbers(option, numbers, 6)), *edges};
         return [=](Case& c) { f(c).push_back(value); };
     }
     Edit operator()(FieldOf<std::vector<Seed>> f) const {
@@ -162,7 +175,8 @@ Edit toEdit(const Setting& setting, const std::string& text) {
 std::vector<std::string> joinNumbers(const std::vector<std::string>& arguments) {
     const std::map<std::string, std::size_t, std::less<>> counts{
         {"--seed", 3},         {"--box", 6},           {"--box-size", 9},   {"--sphere-size", 7},
-        {"--cylinder-size", 10}, {"--point-size", 6}, {"--segment-size", 9}, {"--line-size", 9}};
+        {"--cylinder-size", 10}, {"--point-size", 6}, {"--segment-size", 9}, {"--line-size", 9},
+        {"--feature-box", 6}};
     std::vector<std::string> joined;
     for (std::size_t i = 0; i < arguments.size(); ++i) {
         joined.push_back(arguments[i]);
@@ -178,6 +192,9 @@ std::vector<std::string> joinNumbers(const std::vector<std::string>& arguments) 
         const std::size_t most = wanted == counts.end() ? 1 : wanted->second;
         std::vector<std::string> numbers;
         while (numbers.size() < most && i + 1 < arguments.size() && isNumber(arguments[i + 1]))
+            numbers.push_back(arguments[++i]);
+        const bool wordFollows = arguments[i - numbers.size()] == "--feature-box" && numbers.size() == most;
+        if (wordFollows && i + 1 < arguments.size() && !arguments[i + 1].starts_with("--"))
             numbers.push_back(arguments[++i]);
         if (!numbers.empty()) joined.back() += fmt::format("={}", fmt::join(numbers, ","));
     }

@@ -2,6 +2,7 @@
 // --write-case all go over these lists. On the command line the values follow each other in this order.
 #pragma once
 #include "i2b/options.h"
+#include <optional>
 #include <string_view>
 #include <tuple>
 #include <type_traits>
@@ -44,6 +45,17 @@ inline auto entriesOf(const SegmentSize&) {
 inline auto entriesOf(const LineSize&) {
     return std::tuple{Entry{"through", &LineSize::through}, Entry{"direction", &LineSize::direction},
                       Entry{"size", &LineSize::size, true}};
+}
+
+inline auto entriesOf(const FeatureBox&) {
+    return std::tuple{Entry{"box", &FeatureBox::box}, Entry{"edges", &FeatureBox::edges}};
+}
+
+inline std::string_view nameOf(BoxEdges edges) { return edges == BoxEdges::all ? "all" : "none"; }
+inline std::optional<BoxEdges> boxEdgesNamed(std::string_view name) {
+    for (const BoxEdges edges : {BoxEdges::none, BoxEdges::all})
+        if (nameOf(edges) == name) return edges;
+    return {};
 }
 
 // True for lists whose items have such entries.

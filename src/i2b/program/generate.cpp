@@ -7,6 +7,7 @@
 #include "i2b/fit/fit.h"
 #include "i2b/front/front.h"
 #include "i2b/geometry/features.h"
+#include "i2b/geometry/rims.h"
 #include "i2b/grid/build.h"
 #include "i2b/grid/cut.h"
 #include "i2b/layers/layer_stack.h"
@@ -50,7 +51,12 @@ std::unique_ptr<GridResult> generateGrid(const Options& options, Context& contex
     auto out = std::make_unique<GridResult>();
     GridResult& r = *out;
     r.surface = stage(
-        context, "read", [&] { return readSurface(options.geometry.files, options.geometry.scale, r.notes); },
+        context, "read",
+        [&] {
+            const GeometryOptions& g = options.geometry;
+            r.featureLines = readFeatureLines(g.featureLines, g.scale, r.notes.messages);
+            return readSurface(g.files, g.scale, r.notes);
+        },
         [](const Surface& s) { return s.triangles.size(); });
     r.field = stage(
         context, "size", [&] { return makeSizeField(r.surface, options.size, options.domain); },
@@ -102,11 +108,15 @@ MeshResult generate(const Options& options, Context& context) {
     const FeatureGraph features = stage(
         context, "features",
         [&] {
-            FeatureOptions f;
-            f.angle = options.geometry.featureAngle;
-            return buildFeatureGraph(c.surface, f);
+            const FeatureOptions f = featureOptions(options.geometry, c.featureLines);
+            FeatureGraph graph = buildFeatureGraph(c.surface, f);
+            // A wall that comes as near to a rim leaves no row of uncut cells for a mesh to wrap round it.
+            markRims(graph, *c.index, f, 2 * options.size.surface);
+            return graph;
         },
         [](const FeatureGraph& f) { return f.edges.size(); });
+    std::vector<std::string>& notes = out.cartesian->notes.messages;
+    notes.insert(notes.end(), features.notes.begin(), features.notes.end());
     stage(
         context, "fit",
         [&] { return fitFront(front, *lattice, *c.index, features, options.fit, context); },

@@ -4,6 +4,7 @@
 #include "i2b/assemble/poly_mesh.h"
 #include "i2b/carve/kept_cells.h"
 #include "i2b/core/context.h"
+#include "i2b/geometry/feature_lines.h"
 #include "i2b/geometry/read.h"
 #include "i2b/geometry/surface_index.h"
 #include "i2b/options.h"
@@ -16,6 +17,7 @@ namespace i2b {
 
 struct GridResult {
     Surface surface;
+    FeatureLines featureLines;           // of files; read with the surface, so that what is wrong there shows early
     GeometryNotes notes;
     std::unique_ptr<SurfaceIndex> index; // of surface; do not move the surface away
     SizeField field;

@@ -37,7 +37,24 @@ void checkGeometry(const GeometryOptions& geometry, Checker& check) {
     if (!(geometry.scale > 0 && std::isfinite(geometry.scale)))
         check.add("scale", fmt::format("scale is {}", geometry.scale),
                   "give metres per unit of the files, for example 0.001 for millimetres");
+}
+
+void checkName(const char* key, const std::string& part, Checker& check) {
+    try {
+        std::regex(part, std::regex::ECMAScript);
+    } catch (const std::regex_error&) {
+        check.add(key, fmt::format("'{}' is no regular expression", part),
+                  "write the part's whole name, or an expression such as wheel.*");
+    }
+}
+
+void checkFeatures(const GeometryOptions& geometry, Checker& check) {
     check.within("feature-angle", geometry.featureAngle, 0, 180);
+    for (const std::string& file : geometry.featureLines)
+        if (file.empty()) check.add("feature-lines", "a file has no name", "name an OBJ file of lines");
+    for (const std::string& part : geometry.featureParts) checkName("feature-part", part, check);
+    for (const FeatureBox& box : geometry.featureBoxes)
+        if (!hasVolume(box.box)) check.add("feature-box", "the box has no volume", "give the lower corner first");
 }
 
 bool isSize(const Vec3& size) { return isFinite(size) && size.x > 0 && size.y > 0 && size.z > 0; }
@@ -48,14 +65,7 @@ template <class T>
 void checkItem(const char* key, const T& item, Checker& check) {
     if (!isSize(item.size))
         check.add(key, fmt::format("the size is {} m", smallest(item.size)), "give a positive length in metres");
-    if constexpr (requires { item.part; }) {
-        try {
-            std::regex(item.part, std::regex::ECMAScript);
-        } catch (const std::regex_error&) {
-            check.add(key, fmt::format("'{}' is no regular expression", item.part),
-                      "write the part's whole name, or an expression such as wheel.*");
-        }
-    }
+    if constexpr (requires { item.part; }) checkName(key, item.part, check);
     if constexpr (requires { item.radius; })
         if (!(item.radius > 0 && std::isfinite(item.radius)))
             check.add(key, fmt::format("the radius is {} m", item.radius), "give a positive length in metres");
@@ -143,6 +153,7 @@ std::vector<Problem> validate(const Options& options) {
     checkGeometry(options.geometry, check);
     checkSizes(options.size, check);
     checkDomain(options.domain, check);
+    checkFeatures(options.geometry, check);
     check.within("clearance", options.fit.clearance, 0, 1);
     check.within("sweeps", options.fit.sweeps, 0, 100);
     check.within("layers", options.layers.count, 0, 100);

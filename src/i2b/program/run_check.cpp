@@ -5,6 +5,7 @@
 #include "i2b/program/print.h"
 #include "i2b/program/runs.h"
 #include "i2b/quality/fit_report.h"
+#include "i2b/quality/patch_names.h"
 #include "i2b/quality/quality_report.h"
 #include "i2b/write/foam_read.h"
 #include <fmt/format.h>
@@ -12,7 +13,8 @@
 namespace i2b {
 namespace {
 
-FitReport fitTo(const PolyMesh& mesh, const GeometryOptions& geometry, Run& run) {
+FitReport fitTo(const PolyMesh& mesh, const GeometryOptions& geometry, const std::vector<std::string>& patches,
+                Run& run) {
     GeometryNotes notes;
     Surface surface;
     {
@@ -23,7 +25,7 @@ FitReport fitTo(const PolyMesh& mesh, const GeometryOptions& geometry, Run& run)
     Stage stage(run.context, "fit");
     const SurfaceIndex index(surface);
     const FeatureGraph features = buildFeatureGraph(surface, {geometry.featureAngle, 0});
-    const FitReport fit = measureFit(mesh, index, features);
+    const FitReport fit = measureFit(mesh, index, features, patches);
     stage.items = static_cast<std::uint64_t>(fit.wallFaces);
     return fit;
 }
@@ -37,6 +39,7 @@ int runCheck(const CommandLine& line, Run& run) {
         mesh = readFoam(line.caseFolder);
         stage.items = static_cast<std::uint64_t>(mesh.cells);
     }
+    const std::vector<std::string> patches = patchesNamed(mesh.patches, line.patches); // complains before the work
     QualityReport quality;
     {
         Stage stage(run.context, "quality");
@@ -45,7 +48,7 @@ int runCheck(const CommandLine& line, Run& run) {
     }
     fmt::print(run.out, "{}", formatQuality(quality));
     if (!line.given.options.geometry.files.empty())
-        fmt::print(run.out, "\n{}", fitText(fitTo(mesh, line.given.options.geometry, run)));
+        fmt::print(run.out, "\n{}", fitText(fitTo(mesh, line.given.options.geometry, patches, run)));
     return quality.ok() ? 0 : 1;
 }
 

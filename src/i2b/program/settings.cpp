@@ -16,33 +16,33 @@ const std::array table{
     Setting{"scale", "S", "Metres per unit of the geometry files; every other length is in metres after it",
             I2B_FIELD(double, options.geometry.scale)},
     Setting{"size", "D", "Largest cell that meets the geometry, m; the only length ever required",
-            I2B_FIELD(double, options.size.surface), "surface"},
+            I2B_FIELD(double, options.size.surface), "size", "surface"},
     Setting{"max-size", "D", "Largest cell anywhere, m; 0: from the extent of the domain",
-            I2B_FIELD(double, options.size.max), "max"},
+            I2B_FIELD(double, options.size.max), "size", "max"},
     Setting{"min-size", "D", "Smallest cell, and the size of holes that are closed, m; 0: half of size",
-            I2B_FIELD(double, options.size.min), "min"},
+            I2B_FIELD(double, options.size.min), "size", "min"},
     Setting{"part-size", "PART=D", "Largest cell that meets a part (whole name or regular expression), m",
-            I2B_FIELD(std::vector<PartSize>, options.size.parts), "part"},
+            I2B_FIELD(std::vector<PartSize>, options.size.parts), "size", "part"},
     Setting{"box-size", "X0 Y0 Z0 X1 Y1 Z1 D", "Largest cell inside a box, m",
-            I2B_FIELD(std::vector<BoxSize>, options.size.boxes), "box"},
+            I2B_FIELD(std::vector<BoxSize>, options.size.boxes), "size", "box"},
     Setting{"sphere-size", "X Y Z R D", "Largest cell inside a sphere, m",
-            I2B_FIELD(std::vector<SphereSize>, options.size.spheres), "sphere"},
+            I2B_FIELD(std::vector<SphereSize>, options.size.spheres), "size", "sphere"},
     Setting{"cylinder-size", "X0 Y0 Z0 X1 Y1 Z1 R D", "Largest cell inside a cylinder with flat ends, m",
-            I2B_FIELD(std::vector<CylinderSize>, options.size.cylinders), "cylinder"},
+            I2B_FIELD(std::vector<CylinderSize>, options.size.cylinders), "size", "cylinder"},
     Setting{"band-size", "PART DISTANCE D", "Largest cell within a distance of a part, m",
-            I2B_FIELD(std::vector<BandSize>, options.size.bands), "band"},
+            I2B_FIELD(std::vector<BandSize>, options.size.bands), "size", "band"},
     Setting{"point-size", "X Y Z D", "Largest cell that holds a point, m",
-            I2B_FIELD(std::vector<PointSize>, options.size.points), "point"},
+            I2B_FIELD(std::vector<PointSize>, options.size.points), "size", "point"},
     Setting{"segment-size", "X0 Y0 Z0 X1 Y1 Z1 D", "Largest cell that a line segment meets, m",
-            I2B_FIELD(std::vector<SegmentSize>, options.size.segments), "segment"},
+            I2B_FIELD(std::vector<SegmentSize>, options.size.segments), "size", "segment"},
     Setting{"line-size", "X Y Z DX DY DZ D", "Largest cell that an endless line through X Y Z meets, m",
-            I2B_FIELD(std::vector<LineSize>, options.size.lines), "line"},
+            I2B_FIELD(std::vector<LineSize>, options.size.lines), "size", "line"},
     Setting{"curvature", "N", "Cells per 360 degrees along curved walls, down to min-size; 0: off",
-            I2B_FIELD(double, options.size.curvature), "curvature"},
+            I2B_FIELD(double, options.size.curvature), "size", "curvature"},
     Setting{"gap-cells", "N", "Cells between opposite walls, down to min-size; 0: off",
-            I2B_FIELD(int, options.size.gapCells), "gap-cells"},
+            I2B_FIELD(int, options.size.gapCells), "size", "gap-cells"},
     Setting{"buffer-cells", "N", "Cells of each size between the next finer and the next coarser",
-            I2B_FIELD(int, options.size.bufferCells), "buffer-cells"},
+            I2B_FIELD(int, options.size.bufferCells), "size", "buffer-cells"},
     Setting{"box", "X0 Y0 Z0 X1 Y1 Z1", "The domain, m; without it, a box from the extent of the geometry",
             I2B_FIELD(std::optional<Box>, options.domain.box)},
     Setting{"external", "", "Mesh what lies around the geometry, up to the box; the default without seeds",
@@ -52,7 +52,16 @@ const std::array table{
             I2B_FIELD(std::vector<Seed>, options.domain.seeds)},
     Setting{"feature-angle", "DEG",
             "Angle between two triangles above which their edge is kept sharp; 180: none",
-            I2B_FIELD(double, options.geometry.featureAngle)},
+            I2B_FIELD(double, options.geometry.featureAngle), "feature", "angle"},
+    Setting{"feature-lines", "FILE",
+            "OBJ file whose lines (l) are kept as edges and whose points (p) as corners; repeatable",
+            RepeatedTexts{I2B_FIELD(Texts, options.geometry.featureLines)}, "feature", "lines"},
+    Setting{"feature-part", "PART",
+            "Part (whole name or regular expression) whose free edges and borders are kept; repeatable",
+            RepeatedTexts{I2B_FIELD(Texts, options.geometry.featureParts)}, "feature", "part"},
+    Setting{"feature-box", "X0 Y0 Z0 X1 Y1 Z1 all|none",
+            "Box, m, in which all edges over 1 degree are kept sharp, or none; the last one counts",
+            I2B_FIELD(std::vector<FeatureBox>, options.geometry.featureBoxes), "feature", "box"},
     Setting{"clearance", "F", "Room between the Cartesian cells and the geometry, in cell edges",
             I2B_FIELD(double, options.fit.clearance)},
     Setting{"sweeps", "N", "Sweeps of smoothing and projection of the wall",
@@ -97,23 +106,36 @@ const Setting* findSetting(std::string_view key) {
     return found == table.end() ? nullptr : found;
 }
 
-const Setting* findInSize(std::string_view key) {
-    const auto* const found = std::ranges::find(table, key, &Setting::inSize);
-    return key.empty() || found == table.end() ? nullptr : found;
+bool isTable(std::string_view name) {
+    return !name.empty() && std::ranges::find(table, name, &Setting::table) != table.end();
+}
+
+const Setting* findInTable(std::string_view name, std::string_view key) {
+    const auto* const found = std::ranges::find_if(
+        table, [&](const Setting& s) { return !key.empty() && s.table == name && s.inTable == key; });
+    return found == table.end() ? nullptr : found;
 }
 
 namespace {
 
-std::string_view nearest(std::string_view key, std::string_view Setting::*name) {
-    const Setting* const best = &*std::ranges::min_element(
-        table, {}, [&](const Setting& s) { return (s.*name).empty() ? key.size() + 99 : editDistance(s.*name, key); });
-    const std::string_view found = best->*name;
-    return editDistance(found, key) <= std::max<std::size_t>(2, key.size() / 3) ? found : std::string_view{};
+// nameOf(setting): empty where it is no candidate.
+template <class NameOf>
+std::string_view nearest(std::string_view key, const NameOf& nameOf) {
+    std::string_view best;
+    std::size_t least = key.size() + 99;
+    for (const Setting& setting : table) {
+        const std::string_view name = nameOf(setting);
+        const std::size_t distance = name.empty() ? least : editDistance(name, key);
+        if (distance < least) best = name, least = distance;
+    }
+    return least <= std::max<std::size_t>(2, key.size() / 3) ? best : std::string_view{};
 }
 
 } // namespace
 
-std::string_view nearestKey(std::string_view key) { return nearest(key, &Setting::key); }
-std::string_view nearestInSize(std::string_view key) { return nearest(key, &Setting::inSize); }
+std::string_view nearestKey(std::string_view key) { return nearest(key, [](const Setting& s) { return s.key; }); }
+std::string_view nearestInTable(std::string_view name, std::string_view key) {
+    return nearest(key, [&](const Setting& s) { return s.table == name ? s.inTable : std::string_view{}; });
+}
 
 } // namespace i2b

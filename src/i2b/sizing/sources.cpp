@@ -1,6 +1,6 @@
 #include "i2b/sizing/sources.h"
+#include "i2b/geometry/part_names.h"
 #include <fmt/format.h>
-#include <regex>
 
 namespace i2b {
 namespace {
@@ -97,9 +97,9 @@ LevelTriple Sources::levelOf(const Vec3& asked, const std::string& name) {
 
 std::vector<std::size_t> Sources::partsNamed(const std::string& name) {
     std::vector<std::size_t> found;
-    const std::regex pattern(name);
+    const NamePattern pattern(name);
     for (std::size_t p = 0; p < surface_.parts.size(); ++p) {
-        if (surface_.parts[p].name == name || std::regex_match(surface_.parts[p].name, pattern)) found.push_back(p);
+        if (pattern.matches(surface_.parts[p].name)) found.push_back(p);
     }
     if (found.empty()) note("no part is named '{}'", name);
     return found;

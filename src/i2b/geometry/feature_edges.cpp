@@ -1,0 +1,131 @@
+#include "i2b/geometry/feature_edges.h"
+#include "i2b/core/parallel.h"
+#include <algorithm>
+#include <tbb/parallel_sort.h>
+
+namespace i2b {
+namespace {
+
+// The long side of a needle, and the point that lies on it.
+struct Bridge {
+    EdgeKey edge;
+    std::uint32_t middle;
+    friend auto operator<=>(const Bridge&, const Bridge&) = default;
+};
+
+struct Side {
+    EdgeKey edge;
+    std::uint32_t triangle, apex; // apex: the corner that tells the direction away from the edge
+    friend auto operator<=>(const Side&, const Side&) = default;
+};
+
+// The corner opposite to the longest side if it is nearer to that side than the tolerance, else 3.
+std::size_t needleApex(const FeatureSoup& soup, const TriangleCorners& t, double tolerance) {
+    std::size_t apex = 0;
+    double longest = -1;
+    for (std::size_t k = 0; k < 3; ++k)
+        if (const double l = norm2(soup.points[t[(k + 1) % 3]] - soup.points[t[(k + 2) % 3]]); l > longest)
+            longest = l, apex = k;
+    const Vec3 &a = soup.points[t[0]], &b = soup.points[t[1]], &c = soup.points[t[2]];
+    return norm(cross(b - a, c - a)) <= tolerance * std::sqrt(longest) ? apex : 3;
+}
+
+// The side of a triangle along an edge, or along the chain that stands for it.
+void addSides(const std::vector<Bridge>& bridges, Side side, int depth, std::vector<Side>& sides) {
+    const auto found = std::lower_bound(bridges.begin(), bridges.end(), Bridge{side.edge, 0});
+    if (depth == 0 || found == bridges.end() || found->edge != side.edge || found->middle == side.apex) {
+        sides.push_back(side);
+        return;
+    }
+    const EdgeKey edge = side.edge;
+    side.edge = keyOf(edge.a, found->middle);
+    addSides(bridges, side, depth - 1, sides);
+    side.edge = keyOf(found->middle, edge.b);
+    addSides(bridges, side, depth - 1, sides);
+}
+
+std::vector<Side> collectSides(const FeatureSoup& soup, FeatureGraph& graph) {
+    std::vector<std::uint8_t> needle(soup.triangles.size());
+    parallelFor(needle.size(), [&](std::size_t t) {
+        needle[t] = static_cast<std::uint8_t>(needleApex(soup, soup.triangles[t], graph.weldTolerance));
+    });
+    std::vector<Bridge> bridges;
+    for (std::size_t t = 0; t < needle.size(); ++t) {
+        if (needle[t] == 3) continue;
+        const TriangleCorners& v = soup.triangles[t];
+        bridges.push_back({keyOf(v[(needle[t] + 1u) % 3], v[(needle[t] + 2u) % 3]), v[needle[t]]});
+    }
+    graph.degenerateTriangles += bridges.size();
+    std::sort(bridges.begin(), bridges.end());
+    std::vector<Side> sides;
+    sides.reserve(3 * soup.triangles.size());
+    for (std::size_t t = 0; t < needle.size(); ++t) {
+        if (needle[t] != 3) continue;
+        const TriangleCorners& v = soup.triangles[t];
+        for (std::size_t k = 0; k < 3; ++k)
+            addSides(bridges, {keyOf(v[k], v[(k + 1) % 3]), static_cast<std::uint32_t>(t), v[(k + 2) % 3]}, 8,
+                     sides);
+    }
+    tbb::parallel_sort(sides);
+    return sides;
+}
+
+// Of each triangle the fold to the one that continues it best; the largest of these. Two triangles: their fold.
+double largestFold(const FeatureSoup& soup, const Side* sides, std::size_t n) {
+    if (n < 2) return 0;
+    const Vec3 a = soup.points[sides[0].edge.a], e = normalized(soup.points[sides[0].edge.b] - a);
+    const auto direction = [&](std::size_t i) {
+        const Vec3 d = soup.points[sides[i].apex] - a;
+        return d - e * dot(d, e);
+    };
+    double largest = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        double best = 180;
+        for (std::size_t j = 0; j < n; ++j) {
+            if (j == i) continue;
+            const double f = fold(direction(i), direction(j));
+            best = std::min(best, f);
+            if (n > 2) largest = std::max(largest, std::min(f, 180 - f));
+        }
+        largest = std::max(largest, best);
+    }
+    return largest;
+}
+
+FeatureEdge judge(const FeatureSoup& soup, const Side* sides, std::size_t n, double limit,
+                  const std::vector<bool>& isNamed) {
+    FeatureEdge edge{sides[0].edge.a, sides[0].edge.b, 0, 0};
+    const double angle = largestFold(soup, sides, n);
+    edge.angle = static_cast<float>(angle);
+    bool border = false, named = false;
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::int32_t part = soup.partOf[sides[i].triangle];
+        border = border || part != soup.partOf[sides[0].triangle];
+        named = named || (static_cast<std::size_t>(part) < isNamed.size() && isNamed[static_cast<std::size_t>(part)]);
+    }
+    if (angle > limit) edge.kinds |= bitOf(EdgeKind::sharp);
+    if (n == 1) edge.kinds |= bitOf(EdgeKind::free);
+    if (n > 2) edge.kinds |= bitOf(EdgeKind::nonManifold);
+    if (border) edge.kinds |= bitOf(EdgeKind::partBorder);
+    if (named && (border || n == 1)) edge.kinds |= bitOf(EdgeKind::named);
+    return edge;
+}
+
+} // namespace
+
+std::vector<FeatureEdge> judgeEdges(const FeatureSoup& soup, double limit, const std::vector<bool>& isNamed,
+                                    FeatureGraph& graph) {
+    const std::vector<Side> sides = collectSides(soup, graph);
+    std::vector<std::size_t> start;
+    start.reserve(sides.size() / 2 + 1);
+    for (std::size_t i = 0; i < sides.size(); ++i)
+        if (i == 0 || sides[i].edge != sides[i - 1].edge) start.push_back(i);
+    start.push_back(sides.size());
+    std::vector<FeatureEdge> edges(start.size() - 1);
+    parallelFor(edges.size(), [&](std::size_t i) {
+        edges[i] = judge(soup, &sides[start[i]], start[i + 1] - start[i], limit, isNamed);
+    });
+    return edges;
+}
+
+} // namespace i2b

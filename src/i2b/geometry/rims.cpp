@@ -1,0 +1,129 @@
+#include "i2b/geometry/rims.h"
+#include "i2b/core/parallel.h"
+#include "i2b/geometry/feature_corners.h"
+#include "i2b/geometry/named_features.h"
+#include <algorithm>
+#include <optional>
+
+namespace i2b {
+namespace {
+
+constexpr double wedge = 0.5;       // cosine of half its angle
+constexpr std::size_t mostLooks = 8; // along an edge
+
+struct Section { // of a triangle and the plane across the edge, from its middle; m
+    Vec3 a, b;
+};
+
+// p: the corners seen from a point of the edge, which runs along unit e.
+std::optional<Section> sectionOf(const std::array<Vec3, 3>& p, const Vec3& e) {
+    std::array<Vec3, 6> at;
+    std::size_t n = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 &a = p[k], &b = p[(k + 1) % 3];
+        const double sa = dot(a, e), sb = dot(b, e);
+        if (sa == 0) at[n++] = a;
+        if ((sa < 0 && sb > 0) || (sa > 0 && sb < 0)) at[n++] = a + (b - a) * (sa / (sa - sb));
+    }
+    if (n == 0) return {};
+    // More than two only where the triangle lies in the plane: its longest side stands for it.
+    Section longest{at[0], at[0]};
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = i + 1; j < n; ++j)
+            if (norm2(at[j] - at[i]) > norm2(longest.b - longest.a)) longest = {at[i], at[j]};
+    return longest;
+}
+
+// The part within radius of the origin.
+std::optional<Section> clip(const Section& s, double radius) {
+    const Vec3 d = s.b - s.a;
+    const double dd = norm2(d), ad = dot(s.a, d), outside = norm2(s.a) - radius * radius;
+    if (dd == 0) return outside <= 0 ? std::optional(s) : std::nullopt;
+    const double root = ad * ad - dd * outside;
+    if (root < 0) return {};
+    const double from = std::max(0.0, (-ad - std::sqrt(root)) / dd), to = std::min(1.0, (-ad + std::sqrt(root)) / dd);
+    if (from > to) return {};
+    return Section{s.a + d * from, s.a + d * to};
+}
+
+// Looks at a soup across its free edges.
+class Look {
+  public:
+    Look(const SurfaceIndex& index, double gap, double touch) : index_(index), gap_(gap), touch_(touch) {}
+
+    // Nothing continues the sheet at m on an edge along unit e.
+    bool endsFreely(const Vec3& m, const Vec3& e) const {
+        const std::vector<Section> sections = sectionsAt(m, e);
+        Vec3 inwards; // along the sheet: of the triangle that ends at m
+        for (const Section& s : sections)
+            for (const auto& [end, other] : {std::pair{s.a, s.b}, std::pair{s.b, s.a}})
+                if (norm(end) <= touch_ && norm2(other) > norm2(inwards)) inwards = other;
+        if (norm(inwards) <= touch_) return false;
+        inwards = normalized(inwards);
+        // The wedge is convex: what has both ends in it lies in it.
+        const auto inWedge = [&](const Vec3& p) { return norm(p) <= touch_ || dot(p, inwards) >= wedge * norm(p); };
+        return std::all_of(sections.begin(), sections.end(),
+                           [&](const Section& s) { return inWedge(s.a) && inWedge(s.b); });
+    }
+
+  private:
+    std::vector<Section> sectionsAt(const Vec3& m, const Vec3& e) const {
+        const Surface& surface = index_.surface();
+        const Vec3 r{gap_, gap_, gap_};
+        std::vector<Section> sections;
+        for (const std::uint32_t t : index_.candidates({m - r, m + r})) {
+            const auto& v = surface.triangles[t];
+            const auto section =
+                sectionOf({surface.points[v[0]] - m, surface.points[v[1]] - m, surface.points[v[2]] - m}, e);
+            if (!section) continue;
+            if (const auto near = clip(*section, gap_)) sections.push_back(*near);
+        }
+        return sections;
+    }
+
+    const SurfaceIndex& index_;
+    double gap_, touch_; // m
+};
+
+bool isRim(const FeatureGraph& graph, const FeatureEdge& edge, const Look& look, double gap) {
+    const Vec3 a = graph.points[edge.a], d = graph.points[edge.b] - a;
+    const double length = norm(d);
+    const auto looks = static_cast<std::size_t>(std::clamp(std::ceil(length / gap), 1.0, double(mostLooks)));
+    std::size_t free = 0;
+    for (std::size_t k = 0; k < looks; ++k)
+        free += look.endsFreely(a + d * ((double(k) + 0.5) / double(looks)), d / length);
+    return 2 * free > looks;
+}
+
+void addRimCorners(FeatureGraph& graph, double limit) {
+    std::vector<bool> onRim(graph.points.size());
+    for (const FeatureEdge& e : graph.edges)
+        if (e.kinds & bitOf(EdgeKind::rim)) onRim[e.a] = onRim[e.b] = true;
+    // Elsewhere the graph lacks the milder folds that tell where a bend fades.
+    std::vector<std::uint32_t> corners = findCorners(graph.points, graph.edges, limit);
+    std::erase_if(corners, [&](std::uint32_t c) { return !onRim[c]; });
+    addCorners(corners, graph.corners);
+}
+
+} // namespace
+
+void markRims(FeatureGraph& graph, const SurfaceIndex& index, const FeatureOptions& options, double gap) {
+    gap = std::max(gap, 10 * graph.weldTolerance);
+    if (!(gap > 0)) return;
+    const Look look(index, gap, 4 * graph.weldTolerance); // welding moves a point by up to twice the tolerance
+    parallelFor(
+        graph.edges.size(),
+        [&](std::size_t i) {
+            FeatureEdge& edge = graph.edges[i];
+            if (!(edge.kinds & bitOf(EdgeKind::free))) return;
+            const Vec3 middle = (graph.points[edge.a] + graph.points[edge.b]) * 0.5;
+            if (angleAt(options, middle) < 180 && isRim(graph, edge, look, gap)) edge.kinds |= bitOf(EdgeKind::rim);
+        },
+        16);
+    for (const FeatureEdge& e : graph.edges)
+        if (e.kinds & bitOf(EdgeKind::rim))
+            ++graph.rimEdges, graph.rimEdgeLength += norm(graph.points[e.b] - graph.points[e.a]);
+    addRimCorners(graph, options.angle);
+}
+
+} // namespace i2b

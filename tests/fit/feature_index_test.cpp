@@ -1,0 +1,44 @@
+// Proves: the fit sees every line that a mesh should show, sharp, named or rim, and no other edge of the graph.
+#include "i2b/fit/features.h"
+#include "i2b/geometry/rims.h"
+#include <gtest/gtest.h>
+
+namespace i2b {
+namespace {
+
+// Two unit squares side by side, of two parts; flat.
+Surface sheets() {
+    Surface s;
+    s.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}};
+    s.triangles = {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}};
+    s.partOf = {0, 0, 1, 1};
+    s.parts = {{"left", "", 2}, {"right", "", 2}};
+    return s;
+}
+
+bool seesLineAt(const FeatureGraph& graph, const Vec3& q) {
+    const FeatureIndex::Line line = FeatureIndex(graph).closestLine(q, 0.1);
+    return line.found && norm(line.point - q) < 1e-9;
+}
+
+TEST(FeatureIndex, namedLinesAndRims) {
+    const Surface s = sheets();
+    const SurfaceIndex index(s);
+    const Vec3 onBorder{1, 0.5, 0}, onRim{0.5, 1, 0}, drawn{0.5, 0.25, 0};
+    FeatureOptions options;
+    FeatureGraph graph = buildFeatureGraph(s, options);
+    EXPECT_TRUE(FeatureIndex(graph).empty()); // free edges and borders alone are no lines
+    markRims(graph, index, options, 0.1);
+    EXPECT_TRUE(seesLineAt(graph, onRim));
+    EXPECT_FALSE(seesLineAt(graph, onBorder));
+    EXPECT_TRUE(FeatureIndex(graph).closestCorner({0, 0, 0}, 0.1));
+    EXPECT_FALSE(FeatureIndex(graph).closestCorner({1, 0, 0}, 0.1)); // the rim only passes there
+    options.parts = {"left"};
+    EXPECT_TRUE(seesLineAt(buildFeatureGraph(s, options), onBorder));
+    options.parts.clear();
+    options.lines = {{{0.25, 0.25, 0}, {0.75, 0.25, 0}}, {{0, 1}}, {}};
+    EXPECT_TRUE(seesLineAt(buildFeatureGraph(s, options), drawn));
+}
+
+} // namespace
+} // namespace i2b
