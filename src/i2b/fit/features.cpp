@@ -213,6 +213,13 @@ ClosestPoint FeatureIndex::closestCorner(const Vec3& q, double radius) const {
     return cornerIndex_ ? cornerIndex_->closest(q, radius) : ClosestPoint{};
 }
 
+Vec3 snapTarget(const FeatureIndex& features, const Snap& snap, const Vec3& x, double h) {
+    if (snap.kind == SnapKind::implicitLine) return snap.point + snap.tangent * dot(x - snap.point, snap.tangent);
+    if (snap.kind != SnapKind::line) return snap.point;
+    const FeatureIndex::Line line = features.closestLine(x, 0.5 * h);
+    return line.found ? line.point : snap.point;
+}
+
 std::size_t snapToFeatures(const Band& band, const Front& front, const SurfaceIndex& index, const FeatureIndex& features,
                            const std::vector<Vec3>& x, std::vector<Snap>& snaps) {
     std::vector<Foot> feet(band.walls);

@@ -1,12 +1,14 @@
 #include "i2b/fit/fit.h"
 #include "i2b/core/parallel.h"
 #include "i2b/fit/corner.h"
+#include <algorithm>
 
 namespace i2b {
 namespace {
 
 constexpr int rings = 2;             // of core points behind the front that move
 constexpr double offTarget = 0.005;  // of h: a wall node farther from its target is worked on
+constexpr double unreached = 0.1;    // of h: a node farther from its feature is let go at the end
 constexpr double poorEnergy = 2.2;   // phi: nodes of such corners are worked on
 
 void grow(const Band& band, std::vector<std::uint8_t>& marked, int rings) {
@@ -69,6 +71,18 @@ void rebuild(Band& band, const LatticeMesh& mesh, Front& front) {
     for (std::size_t v = 0; v < walls; ++v) front.mesh.set_point(FrontMesh::VertexHandle(static_cast<int>(v)), placed[v]);
 }
 
+// Lets go of nodes that could not come near the feature that they are held to: on the surface beside it they serve
+// better. Gives how many.
+std::size_t releaseUnreached(const Band& band, const FeatureIndex& features, const std::vector<Vec3>& x, std::vector<Snap>& snaps) {
+    std::vector<std::uint8_t> released(band.walls, 0);
+    parallelFor(band.walls, [&](std::size_t n) {
+        if (snaps[n].kind == SnapKind::none || norm(snapTarget(features, snaps[n], x[n], band.h[n]) - x[n]) <= unreached * band.h[n]) return;
+        snaps[n] = {};
+        released[n] = 1;
+    });
+    return static_cast<std::size_t>(std::count(released.begin(), released.end(), std::uint8_t(1)));
+}
+
 // Newly snapped nodes, and two rings around them, are worked on too.
 void activateSnapped(const Band& band, const std::vector<Snap>& snaps, std::vector<std::uint8_t>& active) {
     std::vector<std::uint8_t> around(band.movable, 0);
@@ -120,6 +134,7 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     pull({1e3, 1e5});
     if (options.features) snapAndSplit(); // what has come into view since
     pull({1e6, 1e6});
+    if (options.features && releaseUnreached(band, features, x, snaps) > 0) pull({1e4, 1e6});
     snapExactly(band, index, features, snaps, x, energy);
     for (const Snap& s : snaps) summary.snapped += s.kind != SnapKind::none;
     for (std::uint8_t a : active) summary.active += a;

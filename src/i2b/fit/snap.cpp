@@ -23,17 +23,14 @@ void snapExactly(const Band& band, const SurfaceIndex& index, const FeatureIndex
         parallelFor(band.walls, [&](std::size_t b) {
             if (colour[b] != k) return;
             const Vec3 f = x[static_cast<std::size_t>(band.frontNode[b])], old = x[b];
-            Vec3 to = snaps[b].point;
+            Vec3 to;
             const double floor = snaps[b].kind == SnapKind::none ? options.floor : options.featureFloor;
             if (snaps[b].kind == SnapKind::none) {
                 const WallTarget target = wallTarget(index, band, b, f, old);
                 if (!target.found) return;
                 to = target.point;
-            } else if (snaps[b].kind == SnapKind::line) {
-                const FeatureIndex::Line line = features.closestLine(old, 0.5 * band.h[b]);
-                if (line.found) to = line.point;
-            } else if (snaps[b].kind == SnapKind::implicitLine) {
-                to += snaps[b].tangent * dot(old - to, snaps[b].tangent);
+            } else {
+                to = snapTarget(features, snaps[b], old, band.h[b]);
             }
             const Vec3 way = withinSides(to - old, band.outside[b]);
             if (norm(way) < 1e-12 * band.h[b]) return;
