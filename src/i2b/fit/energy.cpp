@@ -219,7 +219,10 @@ bool pathsStayFree(const Band& band, const SurfaceIndex& index, const std::vecto
     }
     if (n >= band.walls + band.fronts) return true;
     const std::size_t i = n - band.walls;
-    if (band.behind[i] && index.firstHit(band.inside[i], to) && !index.firstHit(band.inside[i], x[n])) return false;
+    if (band.behind[i]) { // a node on its way out passes through the wall that its own wall nodes are still behind
+        if (index.firstHit(band.inside[i], x[n])) return true;
+        if (index.firstHit(band.inside[i], to)) return false;
+    }
     for (std::int32_t fan : band.fansOf[n - band.walls]) {
         const Vec3& b = x[static_cast<std::size_t>(fan)];
         if (crosses(index, to, b, band.h[n]) && !crosses(index, x[n], b, band.h[n])) return false;
