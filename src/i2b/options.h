@@ -104,9 +104,9 @@ struct DomainOptions {
 
 struct FitOptions {
     double clearance = 0.1;              // cell edges between a kept lattice vertex and the geometry
-    bool passages = true;                // mesh passages of one to two and a half cells too
     int sweeps = 4;                      // of smoothing and projection
     bool features = true;                // snap to sharp edges and corners
+    bool passages = true;                // keep cut cells whose centre has room too: nearer to walls, into passages
 };
 
 struct LayerOptions {

@@ -42,6 +42,7 @@ TEST_P(RandomSoups, KeepClearance) {
         const unsigned seed = GetParam() + caseKinds * i;
         RandomCase c = randomCase(seed);
         c.options.fit.clearance = 0.1 + 0.05 * (i % 3);
+        c.options.fit.passages = false;
         try {
             const Painted p(c);
             const KeptCells kept = carve(p.grid, p.cut, p.regions, *p.index, c.options.fit);
@@ -64,7 +65,71 @@ TEST_P(RandomSoups, KeepClearance) {
     }
 }
 
+// Cells that come back have room, no wall to the kept cells that they share a face with, and leave a front that can be
+// extruded; the same on any number of threads.
+TEST_P(RandomSoups, GiveBackCellsThatHaveRoom) {
+    for (unsigned i = 0; i < 5; ++i) {
+        RandomCase c = randomCase(GetParam() + caseKinds * i);
+        try {
+            const Painted p(c);
+            const KeptCells kept = carve(p.grid, p.cut, p.regions, *p.index, c.options.fit);
+            EXPECT_EQ(frontFault(p.grid, kept), "") << c.kind;
+            EXPECT_EQ(wallBetweenKept(p.grid, p.cut, kept, *p.index), "") << c.kind;
+            for (std::size_t threads : {1, 3}) {
+                const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+                EXPECT_EQ(carve(p.grid, p.cut, p.regions, *p.index, c.options.fit).checksum(), kept.checksum());
+            }
+        } catch (const Error& e) {
+            EXPECT_EQ(e.kind(), ErrorKind::input) << e.problem();
+        }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, RandomSoups, testing::Range(0u, caseKinds));
+
+// A slot of 1.7 cells between two plates, off the lattice: no cell in it is uncut, yet it is meshed from end to end. A
+// crack of a quarter of a cell in a plate lets nothing through.
+TEST(Carve, MeshesNarrowSlotsAndClosesCracks) {
+    RandomCase c = randomCase(0);
+    c.options.size = {};
+    c.options.size.surface = c.options.size.max = 0.1;
+    c.options.domain.flow = Flow::external;
+    c.options.domain.box = Box{{-2, -2, -2}, {2, 2, 2}};
+    const auto plates = [&](double y0, double y1, double z0, double z1) {
+        const auto n = static_cast<std::uint32_t>(c.soup.points.size());
+        c.soup.points.insert(c.soup.points.end(), {{-1, y0, z0}, {1, y0, z0}, {1, y1, z1}, {-1, y1, z1}});
+        c.soup.triangles.insert(c.soup.triangles.end(), {{n, n + 1, n + 2}, {n, n + 2, n + 3}});
+        c.soup.partOf.insert(c.soup.partOf.end(), {0, 0});
+    };
+    c.soup = Surface{};
+    c.soup.parts = {{"plates", "", 4}};
+    plates(-1, 1, 0.017, 0.017), plates(-1, 1, 0.187, 0.187);
+    const Painted slot(c);
+    const KeptCells kept = carve(slot.grid, slot.cut, slot.regions, *slot.index, FitOptions{});
+    const int level = slot.grid.lattice.maxLevel;
+    for (double x = -0.85; x < 0.9; x += 0.1) {
+        bool meshed = false;
+        for (double z : {0.05, 0.15}) {
+            const Index3 cell = slot.grid.lattice.cellAt(level, {x, 0.05, z});
+            meshed = meshed || kept.levels[static_cast<std::size_t>(level)]->isValueOn(toCoord(cell));
+        }
+        EXPECT_TRUE(meshed) << x;
+    }
+    c.soup = Surface{};
+    c.soup.parts = {{"box", "", 10}};
+    plates(-1, -0.0125, 1, 1), plates(0.0125, 1, 1, 1), plates(-1, 1, -1, -1), plates(-1, -1, -1, 1), plates(1, 1, -1, 1);
+    for (double x : {-1.0, 1.0}) {
+        const auto n = static_cast<std::uint32_t>(c.soup.points.size());
+        c.soup.points.insert(c.soup.points.end(), {{x, -1, -1}, {x, 1, -1}, {x, 1, 1}, {x, -1, 1}});
+        c.soup.triangles.insert(c.soup.triangles.end(), {{n, n + 1, n + 2}, {n, n + 2, n + 3}});
+        c.soup.partOf.insert(c.soup.partOf.end(), {0, 0});
+    }
+    const Painted box(c);
+    const KeptCells outside = carve(box.grid, box.cut, box.regions, *box.index, FitOptions{});
+    const Index3 within = box.grid.lattice.cellAt(level, {0, 0, 0.85});
+    EXPECT_FALSE(outside.levels[static_cast<std::size_t>(level)]->isValueOn(toCoord(within)));
+    EXPECT_EQ(wallBetweenKept(box.grid, box.cut, outside, *box.index), "");
+}
 
 // A passage one cell wide between walls that fill their cells: nothing can be left of it.
 TEST(Carve, RefusesWhatIsTooNarrow) {

@@ -127,7 +127,28 @@ CarvedAtRandom::CarvedAtRandom(unsigned seed, const Index3& count, int levels, i
         std::max_element(regions.table.begin(), regions.table.end(),
                          [](const Region& a, const Region& b) { return a.volume < b.volume; });
     largest->painted = true;
-    kept = carve(grid, cut, regions, *index, FitOptions{});
+    FitOptions options;
+    options.passages = false; // the walls are not the geometry's, so nothing tells where there is room
+    kept = carve(grid, cut, regions, *index, options);
+}
+
+std::string wallBetweenKept(const CellGrid& grid, const CutCells& cut, const KeptCells& kept, const SurfaceIndex& index) {
+    for (std::size_t l = 0; l < grid.levels.size(); ++l) {
+        const LevelTriple level = grid.levels[l].level;
+        for (auto it = kept.levels[l]->cbeginValueOn(); it; ++it) {
+            if (!cut.levels[l]->isValueOn(it.getCoord())) continue;
+            const Index3 c = toIndex(it.getCoord());
+            const Vec3 centre = grid.lattice.cellBox(level, c).centre();
+            if (index.closest(centre).distance < 0.25 * grid.lattice.h(level)) return fmt::format("cell {} {} {} has no room", c[0], c[1], c[2]);
+            for (std::size_t d = 0; d < 6; ++d) {
+                Index3 n = c;
+                n[d / 2] += d % 2 ? 1 : -1;
+                if (!kept.levels[l]->isValueOn(toCoord(n))) continue;
+                if (index.firstHit(centre, grid.lattice.cellBox(level, n).centre())) return fmt::format("a wall beside cell {} {} {}", c[0], c[1], c[2]);
+            }
+        }
+    }
+    return "";
 }
 
 } // namespace i2b::test

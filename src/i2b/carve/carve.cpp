@@ -97,14 +97,10 @@ Carved carveRegion(const CellGrid& grid, const CutCells& cut, const Regions& reg
     result.islands = dropIslands(result.cells, grid);
     if (options.passages) {
         const Room room(grid, cut, regions, region, result.cells, taken, index);
-        for (int round = 0; round < passageRounds; ++round) {
-            const std::vector<Place> given = passageCells(room);
-            give(result.cells, given);
-            result.given += given.size();
-            if (given.empty()) break;
-        }
+        const std::vector<Place> given = passageCells(room);
+        give(result.cells, given);
         const ShapingSummary shaped = makeExtrudable(result.cells, grid, index, &room);
-        result.given += shaped.added;
+        result.given = given.size() + shaped.added;
         result.front = shaped.removed;
     } else {
         result.front = makeExtrudable(result.cells, grid, index, nullptr).removed;

@@ -14,8 +14,8 @@ using Steps = std::vector<Step>; // in order of cells
 
 bool contains(const Steps& steps, const Place& c) { return std::binary_search(steps.begin(), steps.end(), Step{c, 0}); }
 
-// Candidates that share a face with a painted cell of their level.
-std::vector<Place> besidePainted(const Room& room) {
+// Candidates that share a face with a kept cell of their level.
+std::vector<Place> besideKept(const Room& room) {
     std::vector<Place> places;
     for (std::size_t l = 0; l < room.candidates().size(); ++l) {
         const std::vector<const MaskLeaf*> leaves = leavesOf(std::as_const(*room.candidates()[l]));
@@ -28,7 +28,7 @@ std::vector<Place> besidePainted(const Room& room) {
                     const Place cell{static_cast<std::int32_t>(l), {o[0] + x, o[1] + y, o[2] + z}};
                     if (room.isKept(cell)) return;
                     for (int d = 0; d < 6; ++d) {
-                        if (!room.isPainted(faceNeighbour(cell, d))) continue;
+                        if (!room.isKept(faceNeighbour(cell, d))) continue;
                         parts[c].push_back(cell);
                         return;
                     }
@@ -77,73 +77,6 @@ Steps reachable(const Room& room, const std::vector<Place>& places, const From& 
     return steps;
 }
 
-// Directions from a cell, a bit each: those with a way out, and those of them that lead to a kept cell.
-struct Ways {
-    unsigned out = 0, toKept = 0;
-    // Walls on two opposite sides: so it is in a passage, and not above a sharp edge.
-    bool isWalled() const { return (out & 0x03u) == 0 || (out & 0x0cu) == 0 || (out & 0x30u) == 0; }
-};
-
-Ways waysOf(const Room& room, const Place& c) {
-    Ways ways;
-    for (int d = 0; d < 6; ++d) {
-        const Place n = faceNeighbour(c, d);
-        if (!room.isWay(c, n)) continue;
-        ways.out |= 1u << d;
-        if (room.isKept(n)) ways.toKept |= 1u << d;
-    }
-    return ways;
-}
-
-bool opposed(const Ways& a, const Ways& b) { return ((a.toKept & 0x15u) << 1 & b.toKept) != 0 || ((b.toKept & 0x15u) << 1 & a.toKept) != 0; }
-
-// Those of the first step that lie between kept cells on two sides, alone or two of them together.
-Steps between(const Room& room, const Steps& first) {
-    std::vector<Ways> ways(first.size());
-    parallelFor(first.size(), [&](std::size_t i) { ways[i] = waysOf(room, first[i].cell); }, 64);
-    Steps found;
-    for (std::size_t i = 0; i < first.size(); ++i) {
-        bool between = opposed(ways[i], ways[i]);
-        for (int d = 0; d < 6 && !between; ++d) {
-            const Place n = faceNeighbour(first[i].cell, d);
-            const auto other = std::lower_bound(first.begin(), first.end(), Step{n, 0});
-            if (!(ways[i].out >> d & 1) || other == first.end() || other->cell != n) continue;
-            const Ways& theirs = ways[static_cast<std::size_t>(other - first.begin())];
-            between = opposed(ways[i], theirs);
-        }
-        if (between) found.push_back(first[i]);
-    }
-    return found;
-}
-
-// Painted cells that went for clearance, where given cells hang on them.
-Steps supports(const Room& room, const Steps& cleared, const Steps& given) {
-    Steps found;
-    for (const Step& s : given) {
-        if (waysOf(room, s.cell).toKept != 0) continue;
-        for (int d = 0; d < 6; ++d) {
-            const Place n = faceNeighbour(s.cell, d);
-            const auto other = std::lower_bound(cleared.begin(), cleared.end(), Step{n, 0});
-            if (other != cleared.end() && other->cell == n && room.isWay(s.cell, n)) found.push_back(*other);
-        }
-    }
-    return found;
-}
-
-// Those of the first step with a way on to the second.
-Steps leadingOn(const Room& room, const Steps& first, const Steps& second) {
-    Steps leading;
-    for (const Step& s : first) {
-        for (int d = 0; d < 6; ++d) {
-            const Place n = faceNeighbour(s.cell, d);
-            if (!contains(second, n) || !room.isWay(s.cell, n)) continue;
-            leading.push_back(s);
-            break;
-        }
-    }
-    return leading;
-}
-
 // Of two cells with a wall between them the one that is kept stays, else the one with more room.
 std::vector<Place> withoutWallsBetween(const Room& room, const Steps& given) {
     std::vector<std::uint8_t> goes(given.size(), 0);
@@ -176,22 +109,14 @@ void append(Steps& to, const Steps& more) {
 } // namespace
 
 std::vector<Place> passageCells(const Room& room) {
-    // Cells that went for clearance count as flow: only what lies two steps behind the painted cells is a passage.
-    std::vector<Place> places = besidePainted(room);
-    const auto cut = std::stable_partition(places.begin(), places.end(), [&](const Place& c) { return room.isPainted(c); });
-    const Steps cleared = reachable(room, {places.begin(), cut}, [&](const Place& n) { return room.isKept(n); });
-    const Steps first = reachable(room, {cut, places.end()}, [&](const Place& n) { return room.isKept(n) || contains(cleared, n); });
-    Steps front = cleared;
-    append(front, first);
-    Steps given = between(room, front), last = first, reached = front;
+    Steps last = reachable(room, besideKept(room), [&](const Place& n) { return room.isKept(n); });
+    Steps given = last;
     for (int depth = 2; depth <= passageDepth && !last.empty(); ++depth) {
-        Steps next = reachable(room, besides(room, last, reached), [&](const Place& n) { return contains(last, n); });
-        if (depth == 2) append(given, leadingOn(room, first, next));
+        std::erase_if(last, [&](const Step& s) { return !room.leadsOn(s.cell, s.clearance); });
+        Steps next = reachable(room, besides(room, last, given), [&](const Place& n) { return contains(last, n); });
         append(given, next);
-        append(reached, next);
         last = std::move(next);
     }
-    append(given, supports(room, cleared, given));
     return withoutWallsBetween(room, given);
 }
 

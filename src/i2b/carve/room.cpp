@@ -40,7 +40,7 @@ bool Room::touchesTaken(const Place& c) const {
 bool Room::has(const Place& c, double& clearance) const {
     const ClosestPoint near = index_.closest(centre(c), h(c));
     clearance = near ? near.distance : h(c);
-    if (clearance < options_.centre * h(c) || touchesTaken(c)) return false;
+    if (clearance < options_.rim * h(c) || touchesTaken(c)) return false;
     for (int d = 0; d < 6; ++d) {
         const Place n = faceNeighbour(c, d);
         if (isForeign(n) && isWay(c, n)) return false;
@@ -51,8 +51,8 @@ bool Room::has(const Place& c, double& clearance) const {
 // Balls about three points of the way: the ones at its ends belong to cells that have room.
 bool Room::isWay(const Place& a, const Place& b) const {
     const Vec3 from = centre(a), to = centre(b);
-    for (double t : {0.25, 0.5, 0.75}) {
-        if (index_.closest(from + (to - from) * t, options_.way * h(a))) return false;
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (index_.closest(from + (to - from) * (0.25 * double(i + 1)), options_.way[i] * h(a))) return false;
     }
     return true;
 }

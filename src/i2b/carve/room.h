@@ -4,17 +4,19 @@
 #include "i2b/carve/vertices.h"
 #include "i2b/geometry/surface_index.h"
 #include "i2b/paint/regions.h"
+#include <array>
 
 namespace i2b {
 
 struct RoomOptions {
-    double centre = 0.35;           // of h: least distance from a given cell's centre to the geometry
-    double way = 0.3;               // of h: least distance from the way between two centres
-    std::uint64_t pocketCells = 64; // an unpainted region of so many cells is part of a passage, not a room of its own
+    double rim = 0.25;                         // of h: least distance from a given cell's centre to the geometry
+    double centre = 0.3;                       // of h: the same where others are reached from it
+    std::array<double, 3> way{0.3, 0.3, 0.25}; // of h: least distance to the geometry at quarters of a way between centres
+    std::uint64_t pocketCells = 64;            // an unpainted region of so many cells is part of a passage, not a room of its own
 };
 
-// Cells beside another region, in sight of it, have no room: paint decides which regions are meshed. A crack narrower
-// than about 0.55 h lets no way through.
+// Cells beside another region, in sight of it, have no room: paint decides which regions are meshed. Some quarter of a
+// way lies within h / 8 of any sheet that it passes, so a crack narrower than 0.33 h lets none through.
 class Room {
   public:
     // kept: of the region; looked at as it is when asked, never changed here. taken: of regions carved before.
@@ -24,11 +26,12 @@ class Room {
     const std::vector<Mask::Ptr>& candidates() const { return candidates_; } // by level: removed at first, may come back
     bool isCandidate(const Place& c) const { return isOn(candidates_, c) || isOn(painted_, c); }
     bool isKept(const Place& c) const { return isOn(kept_, c); }
-    bool isPainted(const Place& c) const { return isOn(painted_, c); } // of the region, kept or not
 
     // Has the cell room? clearance: m, from its centre to the geometry, as far as an edge.
     bool has(const Place& c, double& clearance) const;
-    // May one go straight from centre to centre, with room all along?
+    // May cells be reached from one with this clearance?
+    bool leadsOn(const Place& c, double clearance) const { return clearance >= options_.centre * h(c); }
+    // May one go straight from centre a to centre b, with room all along?
     bool isWay(const Place& a, const Place& b) const;
     // Does geometry cross the straight line between the centres?
     bool isWallBetween(const Place& a, const Place& b) const { return bool(index_.firstHit(centre(a), centre(b))); }
