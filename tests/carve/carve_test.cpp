@@ -87,7 +87,23 @@ TEST_P(RandomSoups, GiveBackCellsThatHaveRoom) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, RandomSoups, testing::Range(0u, caseKinds));
 
-// A slot of 1.7 cells between two plates, off the lattice: no cell in it is uncut, yet it is meshed from end to end. A
+// Six sides; the top is cut in two, so far to either side of y = 0.
+void addBlock(Surface& soup, const Box& b, double crack = 0) {
+    const auto side = [&](std::initializer_list<Vec3> corners) {
+        const auto n = static_cast<std::uint32_t>(soup.points.size());
+        soup.points.insert(soup.points.end(), corners);
+        soup.triangles.insert(soup.triangles.end(), {{n, n + 1, n + 2}, {n, n + 2, n + 3}});
+        soup.partOf.insert(soup.partOf.end(), {0, 0});
+    };
+    const Vec3 &l = b.lo, &h = b.hi;
+    side({{l.x, l.y, l.z}, {h.x, l.y, l.z}, {h.x, h.y, l.z}, {l.x, h.y, l.z}});
+    side({{l.x, l.y, h.z}, {h.x, l.y, h.z}, {h.x, -crack, h.z}, {l.x, -crack, h.z}});
+    side({{l.x, crack, h.z}, {h.x, crack, h.z}, {h.x, h.y, h.z}, {l.x, h.y, h.z}});
+    for (double x : {l.x, h.x}) side({{x, l.y, l.z}, {x, h.y, l.z}, {x, h.y, h.z}, {x, l.y, h.z}});
+    for (double y : {l.y, h.y}) side({{l.x, y, l.z}, {h.x, y, l.z}, {h.x, y, h.z}, {l.x, y, h.z}});
+}
+
+// A slot of 1.7 cells between two blocks, off the lattice: no cell in it is uncut, yet it is meshed from end to end. A
 // crack of a quarter of a cell in a plate lets nothing through.
 TEST(Carve, MeshesNarrowSlotsAndClosesCracks) {
     RandomCase c = randomCase(0);
@@ -95,15 +111,9 @@ TEST(Carve, MeshesNarrowSlotsAndClosesCracks) {
     c.options.size.surface = c.options.size.max = 0.1;
     c.options.domain.flow = Flow::external;
     c.options.domain.box = Box{{-2, -2, -2}, {2, 2, 2}};
-    const auto plates = [&](double y0, double y1, double z0, double z1) {
-        const auto n = static_cast<std::uint32_t>(c.soup.points.size());
-        c.soup.points.insert(c.soup.points.end(), {{-1, y0, z0}, {1, y0, z0}, {1, y1, z1}, {-1, y1, z1}});
-        c.soup.triangles.insert(c.soup.triangles.end(), {{n, n + 1, n + 2}, {n, n + 2, n + 3}});
-        c.soup.partOf.insert(c.soup.partOf.end(), {0, 0});
-    };
     c.soup = Surface{};
-    c.soup.parts = {{"plates", "", 4}};
-    plates(-1, 1, 0.017, 0.017), plates(-1, 1, 0.187, 0.187);
+    c.soup.parts = {{"blocks", "", 28}};
+    for (double z : {-0.3, 0.187}) addBlock(c.soup, {{-1, -1, z}, {1, 1, z + 0.317}});
     const Painted slot(c);
     const KeptCells kept = carve(slot.grid, slot.cut, slot.regions, *slot.index, FitOptions{});
     const int level = slot.grid.lattice.maxLevel;
@@ -116,14 +126,8 @@ TEST(Carve, MeshesNarrowSlotsAndClosesCracks) {
         EXPECT_TRUE(meshed) << x;
     }
     c.soup = Surface{};
-    c.soup.parts = {{"box", "", 10}};
-    plates(-1, -0.0125, 1, 1), plates(0.0125, 1, 1, 1), plates(-1, 1, -1, -1), plates(-1, -1, -1, 1), plates(1, 1, -1, 1);
-    for (double x : {-1.0, 1.0}) {
-        const auto n = static_cast<std::uint32_t>(c.soup.points.size());
-        c.soup.points.insert(c.soup.points.end(), {{x, -1, -1}, {x, 1, -1}, {x, 1, 1}, {x, -1, 1}});
-        c.soup.triangles.insert(c.soup.triangles.end(), {{n, n + 1, n + 2}, {n, n + 2, n + 3}});
-        c.soup.partOf.insert(c.soup.partOf.end(), {0, 0});
-    }
+    c.soup.parts = {{"box", "", 14}};
+    addBlock(c.soup, {{-1, -1, -1}, {1, 1, 1}}, 0.0125);
     const Painted box(c);
     const KeptCells outside = carve(box.grid, box.cut, box.regions, *box.index, FitOptions{});
     const Index3 within = box.grid.lattice.cellAt(level, {0, 0, 0.85});

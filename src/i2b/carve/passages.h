@@ -7,7 +7,7 @@
 
 namespace i2b {
 
-inline constexpr int passageDepth = 8;  // steps from the kept cells
+inline constexpr int passageDepth = 32; // steps from the kept cells
 
 // The cells to give back, in order. No two of kept and given cells that share a face have geometry between their centres.
 std::vector<Place> passageCells(const Room& room);
