@@ -129,8 +129,10 @@ struct Floor { // the wall's pull on a node, weakened while its prism corners ar
 
 // Would the way from f to b newly cross geometry?
 bool crosses(const SurfaceIndex& index, const Vec3& f, const Vec3& b, double h) {
-    const SegmentHit hit = index.firstHit(f, b);
-    return hit && (1 - hit.t) * norm(b - f) > 0.05 * h;
+    const double length = norm(b - f), off = 0.05 * h;
+    if (!(length > off)) return false;
+    const SegmentHit hit = index.firstHit(f, b, 1 - off / length + 1e-9);
+    return hit && (1 - hit.t) * length > off;
 }
 
 bool pathsStayFree(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, std::size_t n, const Vec3& to) {
