@@ -1,7 +1,6 @@
 #include "i2b/fit/band.h"
 #include <algorithm>
 #include <atomic>
-#include <tbb/parallel_sort.h>
 
 namespace i2b {
 namespace {
@@ -45,11 +44,11 @@ Marks markBand(const LatticeMesh& mesh, int rings) {
     Marks marks;
     marks.cells.assign(static_cast<std::size_t>(mesh.cellCount()), 0);
     marks.points.assign(static_cast<std::size_t>(mesh.pointCount()), 0);
-    for (std::int64_t s = 0; s < mesh.frontPointCount(); ++s) {
-        const LatticeMesh::FrontPoint& p = mesh.frontPoint(s);
+    parallelFor(static_cast<std::size_t>(mesh.frontPointCount()), [&](std::size_t s) {
+        const LatticeMesh::FrontPoint& p = mesh.frontPoint(static_cast<std::int64_t>(s));
         marks.points[static_cast<std::size_t>(p.point)] = 1;
         for (int k = 1; k < vertexPattern(p.pattern).components; ++k) marks.points[static_cast<std::size_t>(p.firstExtra + k - 1)] = 1;
-    }
+    });
     for (int ring = 0; ring <= rings; ++ring) {
         const auto now = static_cast<std::uint8_t>(ring + 1);
         const std::vector<std::uint8_t> before = marks.points;
@@ -77,17 +76,25 @@ Marks markBand(const LatticeMesh& mesh, int rings) {
 using Hanging = std::pair<std::int32_t, std::array<std::int32_t, 4>>; // a node and its parents, -1 filled
 bool sameNode(const Hanging& a, const Hanging& b) { return a.first == b.first; }
 
+// An edge between two nodes, either end first.
+constexpr std::uint64_t edgeKey(std::int32_t a, std::int32_t b) { return std::uint64_t(std::uint32_t(a)) << 32 | std::uint32_t(b); }
+
+template <class T>
+void dropRepeats(std::vector<T>& list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    list.shrink_to_fit();
+}
+
 // What some cells contribute.
 struct Pieces {
     std::vector<Corner> corners;
-    std::vector<BandEdge> edges; // both directions
+    std::vector<std::uint64_t> edges; // the lower node first
     std::vector<Hanging> hanging;
 
     // Four cells share an edge: what is alike goes before the pieces are put together.
     void settle() {
-        std::sort(edges.begin(), edges.end());
-        edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-        edges.shrink_to_fit();
+        dropRepeats(edges);
         std::sort(hanging.begin(), hanging.end());
         hanging.erase(std::unique(hanging.begin(), hanging.end(), sameNode), hanging.end());
     }
@@ -142,7 +149,7 @@ void addCoreCell(const Band& band, LatticeMesh::Reader& reader, int level, const
                 sign *= up >= 0 ? 1 : -1;
             }
             for (std::int32_t n : {down, up}) {
-                if (n >= 0) out.edges.push_back({v.node, n, static_cast<float>(band.h[static_cast<std::size_t>(v.node)] / lengthTo(n))});
+                if (n > v.node) out.edges.push_back(edgeKey(v.node, n)); // n has it too
             }
         }
         if (count > 0) {
@@ -160,6 +167,12 @@ double stretch(const Vec3& size, const Vec3& normal) {
     return size[axis] / std::min(size[(axis + 1) % 3], size[(axis + 2) % 3]);
 }
 
+// An edge of the wall with its length on the front, where it is the lattice's.
+BandEdge wallEdge(const Band& band, std::int32_t a, std::int32_t b) {
+    const auto frontOf = [&](std::int32_t w) { return static_cast<std::size_t>(band.frontNode[static_cast<std::size_t>(w)]); };
+    return {a, b, static_cast<float>(band.h[static_cast<std::size_t>(a)] / norm(band.start[frontOf(b)] - band.start[frontOf(a)]))};
+}
+
 void addPrism(const Band& band, const Front& front, std::size_t f, Pieces& out) {
     std::array<std::int32_t, 8> wall{};
     int n = 0;
@@ -169,9 +182,8 @@ void addPrism(const Band& band, const Front& front, std::size_t f, Pieces& out) 
         const auto frontOf = [&](std::int32_t w) { return band.frontNode[static_cast<std::size_t>(w)]; };
         const auto at = [&](std::int32_t node) { return band.start[static_cast<std::size_t>(node)]; };
         const Vec3 x = at(frontOf(b)), e1 = at(frontOf(next)) - x, e2 = at(frontOf(previous)) - x;
-        const double l1 = norm(e1), l2 = norm(e2), h = band.h[static_cast<std::size_t>(b)];
-        out.edges.push_back({b, next, static_cast<float>(h / l1)});
-        out.edges.push_back({b, previous, static_cast<float>(h / l2)});
+        const double l1 = norm(e1), l2 = norm(e2);
+        out.edges.push_back(edgeKey(std::min(b, next), std::max(b, next)));
         if (norm2(cross(e1, e2)) < 0.25 * norm2(e1) * norm2(e2)) continue; // hangs on this polygon's edge
         const double height = prismHeight * std::min(l1, l2) * stretch(front.size[static_cast<std::size_t>(b)], cross(e1, e2));
         const auto il1 = static_cast<float>(1 / l1), il2 = static_cast<float>(1 / l2), ih = static_cast<float>(1 / height);
@@ -180,56 +192,165 @@ void addPrism(const Band& band, const Front& front, std::size_t f, Pieces& out) 
     }
 }
 
-template <class T, class Row, class Value>
-Csr<T> rowsOf(std::size_t rows, std::size_t items, const Row& row, const Value& value) {
-    Csr<T> csr;
+// Rows of item numbers, ascending in each. row(i, put) calls put(r) for every row of an item.
+template <class Row>
+Csr<std::int32_t> rowsOf(std::size_t rows, std::size_t items, const Row& row) {
+    Csr<std::int32_t> csr;
     csr.start.assign(rows + 1, 0);
-    for (std::size_t i = 0; i < items; ++i) row(i, [&](std::size_t r) { ++csr.start[r + 1]; });
-    for (std::size_t r = 0; r < rows; ++r) csr.start[r + 1] += csr.start[r];
-    csr.values.resize(static_cast<std::size_t>(csr.start[rows]));
+    const auto raise = [](std::int64_t& n) { return std::atomic_ref<std::int64_t>(n).fetch_add(1, std::memory_order_relaxed); };
+    parallelFor(items, [&](std::size_t i) { row(i, [&](std::size_t r) { raise(csr.start[r]); }); });
+    csr.values.resize(static_cast<std::size_t>(exclusiveScan(csr.start)));
     std::vector<std::int64_t> next(csr.start.begin(), csr.start.end() - 1);
-    for (std::size_t i = 0; i < items; ++i) row(i, [&](std::size_t r) { csr.values[static_cast<std::size_t>(next[r]++)] = value(i); });
+    parallelFor(items, [&](std::size_t i) {
+        row(i, [&](std::size_t r) { csr.values[static_cast<std::size_t>(raise(next[r]))] = static_cast<std::int32_t>(i); });
+    });
+    parallelFor(rows, [&](std::size_t r) { std::sort(csr.values.data() + csr.start[r], csr.values.data() + csr.start[r + 1]); });
     return csr;
+}
+
+// The same edges from both ends, by node and by other end; make(a, b) gives the edge.
+template <class Make>
+Csr<BandEdge> edgesOf(std::size_t rows, const std::vector<Pieces>& pieces, const Make& make) {
+    std::vector<std::int64_t> next(rows + 1, 0);
+    const auto raise = [](std::int64_t& n) { return std::atomic_ref<std::int64_t>(n).fetch_add(1, std::memory_order_relaxed); };
+    const auto forEdges = [&](const auto& f) {
+        parallelFor(pieces.size(), [&](std::size_t p) {
+            for (std::uint64_t e : pieces[p].edges) f(static_cast<std::uint32_t>(e >> 32), static_cast<std::uint32_t>(e)), f(static_cast<std::uint32_t>(e), static_cast<std::uint32_t>(e >> 32));
+        }, 1);
+    };
+    forEdges([&](std::uint32_t a, std::uint32_t) { raise(next[a]); });
+    std::vector<std::int32_t> other(static_cast<std::size_t>(exclusiveScan(next)));
+    const std::vector<std::int64_t> first = next;
+    forEdges([&](std::uint32_t a, std::uint32_t b) { other[static_cast<std::size_t>(raise(next[a]))] = static_cast<std::int32_t>(b); });
+    Csr<BandEdge> edges; // pieces share edges: each once
+    edges.start.assign(rows + 1, 0);
+    parallelFor(rows, [&](std::size_t r) {
+        std::int32_t* const begin = other.data() + first[r];
+        std::int32_t* const end = other.data() + next[r];
+        std::sort(begin, end);
+        edges.start[r] = std::unique(begin, end) - begin;
+    });
+    edges.values.resize(static_cast<std::size_t>(exclusiveScan(edges.start)));
+    parallelFor(rows, [&](std::size_t r) {
+        for (std::int64_t i = edges.start[r]; i < edges.start[r + 1]; ++i) {
+            edges.values[static_cast<std::size_t>(i)] = make(static_cast<std::int32_t>(r), other[static_cast<std::size_t>(first[r] + i - edges.start[r])]);
+        }
+    });
+    return edges;
+}
+
+// In the order of the pieces.
+void appendCorners(Band& band, const std::vector<Pieces>& pieces) {
+    std::vector<std::size_t> first;
+    for (const Pieces& p : pieces) first.push_back(p.corners.size());
+    const std::size_t before = band.corners.size();
+    band.corners.resize(before + exclusiveScan(first));
+    parallelFor(pieces.size(), [&](std::size_t p) {
+        std::copy(pieces[p].corners.begin(), pieces[p].corners.end(), band.corners.begin() + static_cast<std::ptrdiff_t>(before + first[p]));
+    }, 1);
+}
+
+// Corners and wall edges of the prisms; in the rows of wall nodes there are no others.
+void addPrisms(Band& band, const Front& front) {
+    const std::size_t faces = front.ownerCell.size();
+    std::vector<Pieces> pieces((faces + 2047) / 2048);
+    parallelChunks(faces, 2048, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        for (std::size_t f = begin; f < end; ++f) addPrism(band, front, f, pieces[chunk]);
+        pieces[chunk].settle();
+    });
+    appendCorners(band, pieces);
+    band.cornersOf = rowsOf(band.movable, band.corners.size(), [&](std::size_t c, const auto& put) {
+        for (std::int32_t n : band.corners[c].node) {
+            if (static_cast<std::size_t>(n) < band.movable) put(static_cast<std::size_t>(n));
+        }
+    });
+    const Csr<BandEdge> wall = edgesOf(band.walls, pieces, [&](std::int32_t a, std::int32_t b) { return wallEdge(band, a, b); });
+    // Each wall node has its front node last: higher in number than all wall nodes.
+    const auto old = static_cast<std::size_t>(band.edges.start[band.walls]), all = wall.values.size() + band.walls;
+    std::vector<BandEdge> values(all + band.edges.values.size() - old);
+    std::vector<std::int64_t> start(band.nodes() + 1);
+    parallelFor(band.walls, [&](std::size_t v) {
+        start[v] = wall.start[v] + static_cast<std::int64_t>(v);
+        BandEdge* const end = std::copy(wall[v].begin(), wall[v].end(), values.data() + start[v]);
+        *end = {static_cast<std::int32_t>(v), band.frontNode[v], 1};
+    });
+    parallelFor(band.nodes() + 1 - band.walls, [&](std::size_t i) {
+        start[band.walls + i] = band.edges.start[band.walls + i] + static_cast<std::int64_t>(all) - static_cast<std::int64_t>(old);
+    });
+    parallelFor(values.size() - all, [&](std::size_t i) { values[all + i] = band.edges.values[old + i]; }, 4096);
+    band.edges = {std::move(start), std::move(values)};
 }
 
 // Numbers the band's core points: front, then movable, then fixed; within each in order of their numbers.
 std::vector<std::int32_t> numberNodes(Band& band, const LatticeMesh& mesh, const Marks& marks, int rings) {
-    std::vector<std::int32_t> nodeOf(marks.points.size(), -1);
-    const std::vector<Vec3> positions = mesh.latticePoints();
-    std::vector<double> h(marks.points.size());
-    std::vector<std::uint8_t> outside(marks.points.size(), 0);
+    const std::size_t points = marks.points.size();
+    constexpr std::size_t chunk = 8192;
+    const auto group = [&](std::size_t p) { return marks.points[p] == 1 ? 0 : marks.points[p] <= rings + 1 ? 1 : 2; };
+    const std::size_t chunks = (points + chunk - 1) / chunk;
+    std::vector<std::int32_t> next(3 * chunks, 0); // by group, then chunk
+    parallelChunks(points, chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+        for (std::size_t p = begin; p < end; ++p) {
+            if (marks.points[p]) ++next[static_cast<std::size_t>(group(p)) * chunks + c];
+        }
+    });
+    const std::size_t nodes = band.walls + static_cast<std::size_t>(exclusiveScan(next));
+    band.fronts = chunks ? static_cast<std::size_t>(next[chunks]) : 0;
+    band.movable = band.walls + (chunks ? static_cast<std::size_t>(next[2 * chunks]) : 0);
+    band.start.resize(nodes), band.h.resize(nodes), band.outside.resize(nodes), band.corePoint.resize(nodes - band.walls);
+    std::vector<std::int32_t> nodeOf(points, -1);
+    parallelChunks(points, chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+        for (std::size_t p = begin; p < end; ++p) {
+            if (!marks.points[p]) continue;
+            const std::int32_t i = next[static_cast<std::size_t>(group(p)) * chunks + c]++;
+            nodeOf[p] = static_cast<std::int32_t>(band.walls) + i;
+            band.corePoint[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(p);
+        }
+    });
+    const auto nodeAt = [&](std::int64_t p) { return nodeOf[static_cast<std::size_t>(p)]; };
     for (int l = 0; l < mesh.pointLevels(); ++l) {
         const Index3 n = mesh.lattice().cells(l);
         mesh.points(l).forEach([&](std::int64_t rank, const Index3& v) {
-            const auto r = static_cast<std::size_t>(rank);
-            h[r] = mesh.lattice().h(l);
+            if (nodeAt(rank) < 0) return;
+            const auto i = static_cast<std::size_t>(nodeAt(rank));
+            band.start[i] = mesh.lattice().corner(l, v);
+            band.h[i] = mesh.lattice().h(l);
+            band.outside[i] = 0;
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                if (v[axis] == 0) outside[r] = static_cast<std::uint8_t>(outside[r] | 1 << (2 * axis));
-                if (v[axis] == n[axis]) outside[r] = static_cast<std::uint8_t>(outside[r] | 2 << (2 * axis));
+                if (v[axis] == 0) band.outside[i] = static_cast<std::uint8_t>(band.outside[i] | 1 << (2 * axis));
+                if (v[axis] == n[axis]) band.outside[i] = static_cast<std::uint8_t>(band.outside[i] | 2 << (2 * axis));
             }
         });
     }
-    for (std::int64_t s = 0; s < mesh.frontPointCount(); ++s) {
-        const LatticeMesh::FrontPoint& p = mesh.frontPoint(s);
+    parallelFor(static_cast<std::size_t>(mesh.frontPointCount()), [&](std::size_t s) {
+        const LatticeMesh::FrontPoint& p = mesh.frontPoint(static_cast<std::int64_t>(s));
+        const auto from = static_cast<std::size_t>(nodeAt(p.point));
         for (int k = 1; k < vertexPattern(p.pattern).components; ++k) {
-            h[static_cast<std::size_t>(p.firstExtra + k - 1)] = h[static_cast<std::size_t>(p.point)];
-            outside[static_cast<std::size_t>(p.firstExtra + k - 1)] = p.outside;
+            const auto i = static_cast<std::size_t>(nodeAt(p.firstExtra + k - 1));
+            band.start[i] = band.start[from];
+            band.h[i] = band.h[from];
+            band.outside[i] = p.outside;
         }
-    }
-    const auto group = [&](std::uint8_t mark) { return mark == 0 ? -1 : mark == 1 ? 0 : mark <= rings + 1 ? 1 : 2; };
-    for (int g = 0; g < 3; ++g) {
-        for (std::size_t p = 0; p < nodeOf.size(); ++p) {
-            if (group(marks.points[p]) != g) continue;
-            nodeOf[p] = static_cast<std::int32_t>(band.nodes());
-            band.start.push_back(positions[p]);
-            band.h.push_back(h[p]);
-            band.outside.push_back(outside[p]);
-            band.corePoint.push_back(static_cast<std::int32_t>(p));
-        }
-        if (g == 0) band.fronts = band.nodes() - band.walls;
-        if (g == 1) band.movable = band.nodes();
-    }
+    });
     return nodeOf;
+}
+
+// Of a node in several pieces the first of all, in order.
+Csr<std::int32_t> parentsOf(std::size_t nodes, const std::vector<Pieces>& pieces) {
+    std::vector<Hanging> hanging;
+    for (const Pieces& p : pieces) hanging.insert(hanging.end(), p.hanging.begin(), p.hanging.end());
+    std::sort(hanging.begin(), hanging.end());
+    hanging.erase(std::unique(hanging.begin(), hanging.end(), sameNode), hanging.end());
+    Csr<std::int32_t> rows;
+    rows.start.assign(nodes + 1, 0);
+    for (const auto& [node, parents] : hanging) {
+        for (std::int32_t p : parents) {
+            if (p < 0) continue;
+            ++rows.start[static_cast<std::size_t>(node)];
+            rows.values.push_back(p);
+        }
+    }
+    exclusiveScan(rows.start);
+    return rows;
 }
 
 } // namespace
@@ -238,22 +359,23 @@ Band buildBand(const LatticeMesh& mesh, const Front& front, int rings) {
     const Marks marks = markBand(mesh, rings);
     Band band;
     band.walls = front.front.size();
-    for (std::size_t v = 0; v < band.walls; ++v) {
+    band.start.resize(band.walls), band.reach.resize(band.walls);
+    parallelFor(band.walls, [&](std::size_t v) {
         const auto& p = front.mesh.point(FrontMesh::VertexHandle(static_cast<int>(v)));
-        band.start.push_back({p[0], p[1], p[2]});
-    }
+        const Vec3& s = front.size[v];
+        band.start[v] = {p[0], p[1], p[2]};
+        band.reach[v] = std::max(s.x, std::max(s.y, s.z));
+    });
     band.h = front.h;
-    for (const Vec3& s : front.size) band.reach.push_back(std::max(s.x, std::max(s.y, s.z)));
     band.outside = front.outside;
     const std::vector<std::int32_t> nodeOf = numberNodes(band, mesh, marks, rings);
     band.frontNode.resize(band.walls);
-    for (std::size_t v = 0; v < band.walls; ++v) band.frontNode[v] = nodeOf[static_cast<std::size_t>(front.corePoint[v])];
+    parallelFor(band.walls, [&](std::size_t v) { band.frontNode[v] = nodeOf[static_cast<std::size_t>(front.corePoint[v])]; });
     band.inside.resize(band.fronts);
     band.behind.assign(band.fronts, 0);
-    for (std::size_t v = 0; v < band.walls; ++v) band.inside[static_cast<std::size_t>(band.frontNode[v]) - band.walls] = front.inside[v];
-    band.fansOf = rowsOf<std::int32_t>(
-        band.fronts, band.walls, [&](std::size_t v, const auto& put) { put(static_cast<std::size_t>(band.frontNode[v]) - band.walls); },
-        [](std::size_t v) { return static_cast<std::int32_t>(v); });
+    band.fansOf = rowsOf(band.fronts, band.walls,
+                         [&](std::size_t v, const auto& put) { put(static_cast<std::size_t>(band.frontNode[v]) - band.walls); });
+    parallelFor(band.fronts, [&](std::size_t i) { band.inside[i] = front.inside[static_cast<std::size_t>(band.fansOf[i].back())]; });
 
     std::vector<Pieces> pieces;
     for (int l = 0; l < mesh.levels(); ++l) {
@@ -273,61 +395,32 @@ Band buildBand(const LatticeMesh& mesh, const Front& front, int rings) {
             pieces[before + chunk].settle();
         });
     }
-    const std::size_t before = pieces.size(), faces = front.ownerCell.size();
-    pieces.resize(before + (faces + 2047) / 2048);
-    parallelChunks(faces, 2048, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        for (std::size_t f = begin; f < end; ++f) addPrism(band, front, f, pieces[before + chunk]);
-        pieces[before + chunk].settle();
+    appendCorners(band, pieces);
+    band.coreCorners = band.corners.size();
+    band.parents = parentsOf(band.nodes(), pieces);
+    for (Pieces& p : pieces) p.corners = {}, p.hanging = {};
+    const std::size_t chunk = 4096, before = pieces.size(); // and the front's nodes with the wall's
+    pieces.resize(before + (band.walls + chunk - 1) / chunk);
+    parallelChunks(band.walls, chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+        for (std::size_t v = begin; v < end; ++v) pieces[before + c].edges.push_back(edgeKey(static_cast<std::int32_t>(v), band.frontNode[v]));
     });
-
-    std::vector<BandEdge> edges;
-    std::vector<Hanging> hanging;
-    std::size_t cornerCount = 0, edgeCount = 2 * band.walls;
-    for (const Pieces& p : pieces) cornerCount += p.corners.size(), edgeCount += p.edges.size();
-    band.corners.reserve(cornerCount);
-    edges.reserve(edgeCount);
-    for (Pieces& p : pieces) {
-        band.corners.insert(band.corners.end(), p.corners.begin(), p.corners.end());
-        edges.insert(edges.end(), p.edges.begin(), p.edges.end());
-        hanging.insert(hanging.end(), p.hanging.begin(), p.hanging.end());
-        p = Pieces{};
-    }
-    band.cornersOf = rowsOf<std::int32_t>(
-        band.movable, band.corners.size(),
-        [&](std::size_t c, const auto& put) {
-            for (std::int32_t n : band.corners[c].node) {
-                if (static_cast<std::size_t>(n) < band.movable) put(static_cast<std::size_t>(n));
-            }
-        },
-        [](std::size_t c) { return static_cast<std::int32_t>(c); });
-    for (std::size_t v = 0; v < band.walls; ++v) {
-        edges.push_back({static_cast<std::int32_t>(v), band.frontNode[v], 1});
-        edges.push_back({band.frontNode[v], static_cast<std::int32_t>(v), 1});
-    }
     // Core edges away from the front weigh less at front nodes, so that prisms come out 0.7 h high.
-    parallelFor(edges.size(), [&](std::size_t i) {
-        BandEdge& e = edges[i];
-        const auto a = static_cast<std::size_t>(e.a), b = static_cast<std::size_t>(e.b);
-        if (a >= band.walls && a < band.walls + band.fronts && b >= band.walls + band.fronts) e.weight *= static_cast<float>(prismHeight);
+    band.edges = edgesOf(band.nodes(), pieces, [&](std::int32_t a, std::int32_t b) {
+        const auto p = static_cast<std::size_t>(a), q = static_cast<std::size_t>(b), core = band.walls + band.fronts;
+        if (p < band.walls || q < band.walls) return BandEdge{a, b, 1};
+        BandEdge e{a, b, static_cast<float>(band.h[p] / norm(band.start[q] - band.start[p]))};
+        if (p < core && q >= core) e.weight *= static_cast<float>(prismHeight);
+        return e;
     });
-    tbb::parallel_sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    band.edges = rowsOf<BandEdge>(
-        band.nodes(), edges.size(), [&](std::size_t i, const auto& put) { put(static_cast<std::size_t>(edges[i].a)); },
-        [&](std::size_t i) { return edges[i]; });
-    std::sort(hanging.begin(), hanging.end());
-    hanging.erase(std::unique(hanging.begin(), hanging.end(), sameNode), hanging.end());
-    band.parents.start.assign(band.nodes() + 1, 0);
-    for (const auto& [node, parents] : hanging) {
-        for (std::int32_t p : parents) band.parents.start[static_cast<std::size_t>(node) + 1] += p >= 0;
-    }
-    for (std::size_t n = 0; n < band.nodes(); ++n) band.parents.start[n + 1] += band.parents.start[n];
-    for (const auto& [node, parents] : hanging) {
-        for (std::int32_t p : parents) {
-            if (p >= 0) band.parents.values.push_back(p);
-        }
-    }
+    pieces = {};
+    addPrisms(band, front);
     return band;
+}
+
+void renewPrisms(Band& band, const Front& front) {
+    band.corners.resize(band.coreCorners);
+    band.cornersOf = {};
+    addPrisms(band, front);
 }
 
 } // namespace i2b

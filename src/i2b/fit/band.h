@@ -49,7 +49,8 @@ struct Band {
     std::vector<Vec3> inside;             // m, per front node (less walls): amid the kept cells around it
     std::vector<std::uint8_t> behind;     // per front node (less walls): starts behind geometry, seen from inside
     Csr<std::int32_t> fansOf;             // per front node (less walls): its wall nodes
-    std::vector<Corner> corners;
+    std::vector<Corner> corners;          // the core's, then the prisms'
+    std::size_t coreCorners = 0;
     Csr<std::int32_t> cornersOf;          // per movable node
     Csr<BandEdge> edges;                  // per node: a is the node itself, b the other end
     Csr<std::int32_t> parents;            // per node: ends of the coarse edge or face on whose middle it hangs; or none
@@ -58,5 +59,8 @@ struct Band {
 };
 
 Band buildBand(const LatticeMesh& mesh, const Front& front, int rings);
+
+// After faces of the front were split: the same nodes and core, other prisms.
+void renewPrisms(Band& band, const Front& front);
 
 } // namespace i2b

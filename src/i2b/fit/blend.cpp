@@ -12,56 +12,85 @@ constexpr double stepBack = 0.35;   // of the way
 constexpr double slope = 0.34;      // largest difference of alpha between neighbours: keeps the rim of a patch valid
 constexpr int gentleRounds = 30;    // after these only inverted corners count, and then their nodes go back whole
 
+// How far each movable node has come, and what follows from changes that nobody has looked at yet.
+struct Progress {
+    std::vector<double> alpha;
+    std::vector<std::uint8_t> untold;  // lowered, and its neighbours have not been bounded by it
+    std::vector<std::uint8_t> unplaced; // lowered since the nodes were placed
+    std::vector<std::uint8_t> moved;   // when they were placed last
+
+    explicit Progress(std::size_t movable) : alpha(movable, 1), untold(movable, 0), unplaced(movable, 1), moved(movable, 0) {}
+    void lower(std::size_t n, double to) {
+        if (!(to < alpha[n])) return;
+        alpha[n] = to;
+        untold[n] = unplaced[n] = 1;
+    }
+};
+
+void mark(std::uint8_t& flag) { std::atomic_ref<std::uint8_t>(flag).store(1, std::memory_order_relaxed); } // all set the same
+
 // Nodes of bad corners step back by `step`. Only corners with a node that has moved since the last round are judged
-// again. Gives how many nodes changed.
-std::size_t stepBackBad(const Band& band, const std::vector<Vec3>& x, double limit, double step, const std::vector<std::uint8_t>& moved,
-                        std::vector<double>& alpha) {
+// again, each at the first such node. Gives whether any changed.
+bool stepBackBad(const Band& band, const std::vector<Vec3>& x, double limit, double step, Progress& progress) {
     std::vector<std::uint8_t> bad(band.nodes(), 0);
-    parallelFor(band.corners.size(), [&](std::size_t c) {
-        const Corner& corner = band.corners[c];
-        bool look = false;
-        for (std::int32_t n : corner.node) look = look || moved[static_cast<std::size_t>(n)];
-        if (!look || !(cornerEnergy(corner, x) > limit)) return;
-        for (std::int32_t n : corner.node) { // all that set it set the same
-            std::atomic_ref<std::uint8_t>(bad[static_cast<std::size_t>(n)]).store(1, std::memory_order_relaxed);
+    parallelFor(band.movable, [&](std::size_t n) {
+        if (!progress.moved[n]) return;
+        const auto isMoved = [&](std::int32_t m) { return static_cast<std::size_t>(m) < band.movable && progress.moved[static_cast<std::size_t>(m)]; };
+        for (std::int32_t c : band.cornersOf[n]) {
+            const Corner& corner = band.corners[static_cast<std::size_t>(c)];
+            const std::int32_t first = *std::find_if(corner.node.begin(), corner.node.end(), isMoved);
+            if (static_cast<std::size_t>(first) != n || !(cornerEnergy(corner, x) > limit)) continue;
+            for (std::int32_t m : corner.node) mark(bad[static_cast<std::size_t>(m)]);
         }
     });
-    std::size_t changed = 0;
-    for (std::size_t n = 0; n < band.movable; ++n) {
-        if (!bad[n] || alpha[n] <= 0) continue;
-        alpha[n] = std::max(0.0, alpha[n] - step);
-        ++changed;
-    }
-    return changed;
+    std::uint8_t changed = 0;
+    parallelFor(band.movable, [&](std::size_t n) {
+        if (!bad[n] || progress.alpha[n] <= 0) return;
+        progress.lower(n, std::max(0.0, progress.alpha[n] - step));
+        mark(changed);
+    }, 4096);
+    return changed != 0;
 }
 
-// Lowers alpha until neighbours differ by no more than the slope, and the nodes of one fan agree.
-void spread(const Band& band, std::vector<double>& alpha) {
+// Lowers alpha until neighbours differ by no more than the slope, and the nodes of one fan agree. Only where a neighbour
+// was lowered there is anything to do.
+void spread(const Band& band, Progress& progress) {
+    std::vector<double> bound(band.movable);
     for (int round = 0; round < 4; ++round) {
-        const std::vector<double> old = alpha;
+        std::vector<std::uint8_t> look(band.nodes(), 0);
         parallelFor(band.movable, [&](std::size_t n) {
-            double a = old[n];
+            if (!progress.untold[n]) return;
+            for (const BandEdge& e : band.edges[n]) mark(look[static_cast<std::size_t>(e.b)]);
+            progress.untold[n] = 0;
+        }, 1024);
+        parallelFor(band.movable, [&](std::size_t n) {
+            if (!look[n]) return;
+            double a = progress.alpha[n];
             for (const BandEdge& e : band.edges[n]) {
                 const auto b = static_cast<std::size_t>(e.b);
-                if (b < band.movable) a = std::min(a, old[b] + slope);
+                if (b < band.movable) a = std::min(a, progress.alpha[b] + slope);
             }
-            alpha[n] = a;
-        });
-        for (std::size_t b = 0; b < band.walls; ++b) {
-            auto& f = alpha[static_cast<std::size_t>(band.frontNode[b])];
-            f = std::min(f, alpha[b]);
-        }
-        parallelFor(band.walls, [&](std::size_t b) { alpha[b] = std::min(alpha[b], alpha[static_cast<std::size_t>(band.frontNode[b])]); });
+            bound[n] = a;
+        }, 1024);
+        parallelFor(band.movable, [&](std::size_t n) {
+            if (look[n]) progress.lower(n, bound[n]);
+        }, 4096);
+        parallelFor(band.fronts, [&](std::size_t i) {
+            for (std::int32_t b : band.fansOf[i]) progress.lower(band.walls + i, progress.alpha[static_cast<std::size_t>(b)]);
+            for (std::int32_t b : band.fansOf[i]) progress.lower(static_cast<std::size_t>(b), progress.alpha[band.walls + i]);
+        }, 1024);
     }
 }
 
-void place(const Band& band, const std::vector<Vec3>& start, const std::vector<Vec3>& goal, const std::vector<double>& alpha, std::vector<Vec3>& x,
-           std::vector<std::uint8_t>& moved) {
+void place(const Band& band, const std::vector<Vec3>& start, const std::vector<Vec3>& goal, Progress& progress, std::vector<Vec3>& x) {
     parallelFor(band.movable, [&](std::size_t n) {
-        const Vec3 to = start[n] + (goal[n] - start[n]) * alpha[n];
-        moved[n] = !(to == x[n]);
+        progress.moved[n] = 0;
+        if (!progress.unplaced[n]) return;
+        const Vec3 to = start[n] + (goal[n] - start[n]) * progress.alpha[n];
+        progress.moved[n] = !(to == x[n]);
+        progress.unplaced[n] = 0;
         x[n] = to;
-    });
+    }, 1024);
 }
 
 } // namespace
@@ -82,24 +111,23 @@ double scaledJacobian(const Corner& c, const std::vector<Vec3>& x) {
 }
 
 std::vector<double> blend(const Band& band, const std::vector<Vec3>& start, const std::vector<Vec3>& goal, std::vector<Vec3>& x) {
-    std::vector<double> alpha(band.movable, 1);
+    Progress progress(band.movable);
     x = start;
-    std::vector<std::uint8_t> moved(band.nodes(), 0);
-    place(band, start, goal, alpha, x, moved);
+    place(band, start, goal, progress, x);
     for (int round = 0;; ++round) {
         const bool gentle = round < gentleRounds;
-        if (round == gentleRounds) std::fill(moved.begin(), moved.end(), std::uint8_t(1)); // judged by another limit now
+        if (round == gentleRounds) std::fill(progress.moved.begin(), progress.moved.end(), std::uint8_t(1)); // judged by another limit now
         const double limit = gentle ? badEnergy : std::numeric_limits<double>::max();
-        const bool changed = stepBackBad(band, x, limit, gentle ? stepBack : 1.0, moved, alpha) > 0;
+        const bool changed = stepBackBad(band, x, limit, gentle ? stepBack : 1.0, progress);
         if (!changed && !gentle) break;
         if (!changed) {
             round = gentleRounds - 1;
             continue;
         }
-        if (gentle) spread(band, alpha);
-        place(band, start, goal, alpha, x, moved);
+        if (gentle) spread(band, progress);
+        place(band, start, goal, progress, x);
     }
-    return alpha;
+    return progress.alpha;
 }
 
 } // namespace i2b

@@ -1,52 +1,12 @@
 #include "i2b/core/parallel.h"
 #include "i2b/fit/corner.h"
 #include "i2b/fit/fit.h"
+#include "i2b/fit/local_corners.h"
 #include <Eigen/Dense>
 #include <algorithm>
 
 namespace i2b {
 namespace {
-
-// One corner as a function of one of its nodes: D is affine in that node's place x, |J|^2 quadratic. Both are exact
-// for any move of the node, so steps and line searches touch no memory.
-struct LocalCorner {
-    Vec3 gradient;         // of D
-    double det0 = 0;       // D at the node's present place
-    double quadratic = 0;  // trace = quadratic * |d|^2 + linear . d + trace0, with d the move from there
-    Vec3 linear;
-    double trace0 = 0;
-    double weight = 1;
-};
-
-LocalCorner localCorner(const Corner& c, std::size_t node, const std::vector<Vec3>& x) {
-    std::array<Vec3, 4> p;
-    int k = 0;
-    for (int i = 0; i < 4; ++i) {
-        p[std::size_t(i)] = x[static_cast<std::size_t>(c.node[std::size_t(i)])];
-        if (static_cast<std::size_t>(c.node[std::size_t(i)]) == node) k = i;
-    }
-    const std::array<double, 3> w{double(c.inverseLength[0]), double(c.inverseLength[1]), double(c.inverseLength[2])};
-    const double volume = w[0] * w[1] * w[2];
-    const std::array<Vec3, 3> e{p[1] - p[0], p[2] - p[0], p[3] - p[0]};
-    const std::array<Vec3, 3> g{cross(e[1], e[2]) * volume, cross(e[2], e[0]) * volume, cross(e[0], e[1]) * volume};
-    LocalCorner local;
-    local.weight = double(c.weight);
-    local.det0 = dot(g[0], e[0]);
-    for (std::size_t i = 0; i < 3; ++i) local.trace0 += norm2(e[i]) * w[i] * w[i];
-    if (k == 0) {
-        local.gradient = -(g[0] + g[1] + g[2]);
-        for (std::size_t i = 0; i < 3; ++i) {
-            local.quadratic += w[i] * w[i];
-            local.linear -= e[i] * (2 * w[i] * w[i]);
-        }
-    } else {
-        const auto i = static_cast<std::size_t>(k - 1);
-        local.gradient = g[i];
-        local.quadratic = w[i] * w[i];
-        local.linear = e[i] * (2 * w[i] * w[i]);
-    }
-    return local;
-}
 
 // weight * sum (normal . (b - point) / h)^2 over one normal for a surface, two for a line, three for a point.
 struct WallTerm {
@@ -105,14 +65,8 @@ WallTerm wallTerm(const Band& band, const SurfaceIndex& index, const FeatureInde
     return term;
 }
 
-double energyAt(const std::vector<LocalCorner>& corners, const WallTerm& wall, const Vec3& d) {
-    double sum = 0;
-    for (const LocalCorner& c : corners) {
-        const double det = c.det0 + dot(c.gradient, d);
-        if (!(det > 0)) return std::numeric_limits<double>::infinity();
-        const double phi = energyOf(c.trace0 + dot(c.linear, d) + c.quadratic * norm2(d), det);
-        sum += c.weight * phi * phi * phi;
-    }
+double energyAt(LocalCorners& corners, const WallTerm& wall, const Vec3& d) {
+    double sum = corners.energy(d);
     for (int i = 0; i < wall.planes; ++i) {
         const double r = wall.residual(i, d);
         sum += wall.weight * r * r;
@@ -120,42 +74,9 @@ double energyAt(const std::vector<LocalCorner>& corners, const WallTerm& wall, c
     return sum;
 }
 
-// Gradient and the upper triangle of the Hessian: xx, xy, xz, yy, yz, zz.
-struct Derivatives {
-    Vec3 gradient;
-    std::array<double, 6> hessian{};
-
-    void addOuter(const Vec3& a, double w) {
-        const Vec3 s = a * w;
-        hessian[0] += s.x * a.x, hessian[1] += s.x * a.y, hessian[2] += s.x * a.z;
-        hessian[3] += s.y * a.y, hessian[4] += s.y * a.z, hessian[5] += s.z * a.z;
-    }
-    void addCross(const Vec3& a, const Vec3& b, double w) { // w (a b^T + b a^T)
-        const Vec3 s = a * w, t = b * w;
-        hessian[0] += 2 * s.x * b.x, hessian[1] += s.x * b.y + t.x * a.y, hessian[2] += s.x * b.z + t.x * a.z;
-        hessian[3] += 2 * s.y * b.y, hessian[4] += s.y * b.z + t.y * a.z, hessian[5] += 2 * s.z * b.z;
-    }
-    void addIdentity(double w) { hessian[0] += w, hessian[3] += w, hessian[5] += w; }
-};
-
-// Of sum w phi^3 and the wall term, with phi = T D^(-2/3) / 4 + (D + 1/D) / 8.
-Derivatives derivativesAt(const std::vector<LocalCorner>& corners, const WallTerm& wall, const Vec3& d) {
-    Derivatives sum;
-    for (const LocalCorner& c : corners) {
-        const double det = c.det0 + dot(c.gradient, d);
-        const double trace = c.trace0 + dot(c.linear, d) + c.quadratic * norm2(d);
-        const double root = cubeRoot(det), d23 = 0.25 / (root * root), inverse = 1 / det;
-        const Vec3 t = c.linear + d * (2 * c.quadratic);
-        const double phi = trace * d23 + 0.125 * (det + inverse);
-        const double slope = -(2.0 / 3) * trace * d23 * inverse + 0.125 * (1 - inverse * inverse); // d phi / d det
-        const Vec3 dphi = t * d23 + c.gradient * slope;
-        const double w = 3 * c.weight * phi * phi;
-        sum.gradient += dphi * w;
-        sum.addIdentity(w * 2 * c.quadratic * d23);
-        sum.addCross(t, c.gradient, -w * (2.0 / 3) * d23 * inverse);
-        sum.addOuter(c.gradient, w * ((10.0 / 9) * trace * d23 * inverse * inverse + 0.25 * inverse * inverse * inverse));
-        sum.addOuter(dphi, 6 * c.weight * phi);
-    }
+// At the move that energyAt() was asked for last.
+Derivatives derivativesAt(const LocalCorners& corners, const WallTerm& wall, const Vec3& d) {
+    Derivatives sum = corners.derivatives(d);
     for (int i = 0; i < wall.planes; ++i) {
         const Vec3 n = wall.normal[static_cast<std::size_t>(i)] * wall.inverseH;
         sum.gradient += n * (2 * wall.weight * wall.residual(i, d));
@@ -165,7 +86,7 @@ Derivatives derivativesAt(const std::vector<LocalCorner>& corners, const WallTer
 }
 
 // The move of one node: a few Newton steps, each capped and halved until the energy falls.
-Vec3 bestMove(const std::vector<LocalCorner>& corners, const WallTerm& wall, std::uint8_t outside, double cap, int steps) {
+Vec3 bestMove(LocalCorners& corners, const WallTerm& wall, std::uint8_t outside, double cap, int steps) {
     Vec3 d;
     double energy = energyAt(corners, wall, d);
     for (int step = 0; step < steps; ++step) {
@@ -208,8 +129,10 @@ struct Floor { // the wall's pull on a node, weakened while its prism corners ar
 
 // Would the way from f to b newly cross geometry?
 bool crosses(const SurfaceIndex& index, const Vec3& f, const Vec3& b, double h) {
-    const SegmentHit hit = index.firstHit(f, b);
-    return hit && (1 - hit.t) * norm(b - f) > 0.05 * h;
+    const double length = norm(b - f), off = 0.05 * h;
+    if (!(length > off)) return false;
+    const SegmentHit hit = index.firstHit(f, b, 1 - off / length + 1e-9);
+    return hit && (1 - hit.t) * length > off;
 }
 
 bool pathsStayFree(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, std::size_t n, const Vec3& to) {
@@ -273,22 +196,16 @@ void minimiseEnergy(const Band& band, const SurfaceIndex& index, const FeatureIn
         context.checkCancelled();
         for (const std::vector<std::uint32_t>& group : nodes) {
             parallelChunks(group.size(), 128, [&](std::size_t begin, std::size_t end, std::size_t) {
-                std::vector<LocalCorner> corners;
+                LocalCorners corners;
                 for (std::size_t i = begin; i < end; ++i) {
                     const std::size_t n = group[i];
-                    corners.clear();
-                    double worst = 1;
-                    for (std::int32_t c : band.cornersOf[n]) {
-                        const Corner& corner = band.corners[static_cast<std::size_t>(c)];
-                        corners.push_back(localCorner(corner, n, x));
-                        if (n < band.walls) worst = std::min(worst, scaledJacobian(corner, x));
-                    }
+                    corners.gather(band, n, x);
                     if (corners.empty()) continue;
                     WallTerm wall;
                     if (n < band.walls) {
                         // Nodes on features may be in poorer corners: a sharp edge asks for them.
                         const double floor = snaps[n].kind == SnapKind::none ? options.floor : options.featureFloor;
-                        if (lambda > 5) floors[n].update(worst, floor);
+                        if (lambda > 5) floors[n].update(corners.worstScaledJacobian(), floor);
                         wall = wallTerm(band, index, features, snaps[n], x, n, lambda * floors[n].factor);
                     }
                     if (n >= band.walls && n < band.walls + band.fronts && band.behind[n - band.walls]) wall = wayOut(band, index, x, n, lambda);

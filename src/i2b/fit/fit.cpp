@@ -53,24 +53,6 @@ void store(const Band& band, const std::vector<Vec3>& x, Front& front) {
     }
 }
 
-// Makes the band of a front whose faces were split: the same nodes, other corners. The start positions stay the
-// lattice's. Two bands at a time would be the most memory of a run.
-void rebuild(Band& band, const LatticeMesh& mesh, Front& front) {
-    const std::vector<Vec3> start = std::move(band.start);
-    const std::vector<std::uint8_t> behind = std::move(band.behind);
-    const std::size_t walls = band.walls;
-    band = Band{};
-    std::vector<FrontMesh::Point> placed;
-    for (std::size_t v = 0; v < walls; ++v) {
-        const FrontMesh::VertexHandle h(static_cast<int>(v));
-        placed.push_back(front.mesh.point(h));
-        front.mesh.set_point(h, {start[v].x, start[v].y, start[v].z});
-    }
-    band = buildBand(mesh, front, rings);
-    band.behind = behind;
-    for (std::size_t v = 0; v < walls; ++v) front.mesh.set_point(FrontMesh::VertexHandle(static_cast<int>(v)), placed[v]);
-}
-
 // Lets go of nodes that could not come near the feature that they are held to: on the surface beside it they serve
 // better. Gives how many.
 std::size_t releaseUnreached(const Band& band, const FeatureIndex& features, const std::vector<Vec3>& x, std::vector<Snap>& snaps) {
@@ -127,7 +109,7 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
         store(band, x, front);
         const std::size_t split = splitAlongFeatures(front, band, index, features, x, snaps);
         summary.split += split;
-        if (split > 0) rebuild(band, mesh, front);
+        if (split > 0) renewPrisms(band, front);
         activateSnapped(band, snaps, active);
     };
     if (options.features) snapAndSplit();

@@ -124,8 +124,9 @@ WallTarget wallTarget(const SurfaceIndex& index, const Band& band, std::size_t w
     const double h = band.h[wall], length = norm(f - b);
     const std::uint8_t outside = band.outside[wall];
     ClosestPoint c;
-    const SegmentHit hit = length > 0 && outside == 0 ? index.firstHit(f, b) : SegmentHit{};
-    if (hit && (1 - hit.t) * length > 1e-3 * h) {
+    const double off = 1e-3 * h; // what lies nearer to b is its closest point's business
+    const SegmentHit hit = length > off && outside == 0 ? index.firstHit(f, b, 1 - off / length + 1e-9) : SegmentHit{};
+    if (hit && (1 - hit.t) * length > off) {
         c = {f + (b - f) * hit.t, 0, hit.triangle};
     } else {
         const Vec3 q = length > 0 ? b + withinSides(f - b, outside) * std::min(1.0, 0.1 * h / length) : b;

@@ -416,52 +416,58 @@ ClosestPoint SurfaceIndex::closest(const Vec3& q, double radius,
     return impl_->closest(q, radius, accept);
 }
 
-SegmentHit SurfaceIndex::firstHit(const Vec3& a, const Vec3& b) const {
+SegmentHit SurfaceIndex::firstHit(const Vec3& a, const Vec3& b, double before) const {
     const TriangleTree& tree = impl_->tree;
-    SegmentHit best;
-    if (tree.nodes.empty()) return best;
+    if (tree.nodes.empty()) return {};
+    SegmentHit best{before, ~0u};
     const Vec3 d = b - a, from = a - tree.centre;
-    // Twice the farthest that hitTriangle() lets a hit lie off its triangle, and so off the boxes.
+    // Boxes are judged in single precision. Twice the farthest that hitTriangle() lets a hit lie off its triangle, and so
+    // off the boxes, and what rounding of places and differences adds; `wide` is for the rounding of quotients.
+    constexpr double single = std::numeric_limits<float>::epsilon();
     const double pad = 2e-13 * (2 * (tree.reach + maxAbs(from)) + maxAbs(d)) +
-                       4 * eps * (tree.magnitude + maxAbs(a) + maxAbs(b));
-    double inverse[3], low[3], high[3];
+                       4 * eps * (tree.magnitude + maxAbs(a) + maxAbs(b)) + 4 * single * (tree.reach + maxAbs(from));
+    constexpr auto wide = static_cast<float>(1 + 16 * single);
+    float inverse[3], low[3], high[3];
     for (int k = 0; k < 3; ++k) { // a component of zero must not give 0 * inf
-        const double s = std::abs(d[k]) < 1e-200 ? std::copysign(1e-200, d[k]) : d[k];
-        inverse[k] = 1 / s;
-        low[k] = from[k] + (s > 0 ? pad : -pad); // the side where the segment enters, moved against it
-        high[k] = from[k] - (s > 0 ? pad : -pad);
+        const double s = std::abs(d[k]) < 1e-25 ? std::copysign(1e-25, d[k]) : d[k];
+        inverse[k] = static_cast<float>(1 / s);
+        low[k] = static_cast<float>(from[k] + (s > 0 ? pad : -pad)); // the side where the segment enters, moved against it
+        high[k] = static_cast<float>(from[k] - (s > 0 ? pad : -pad));
     }
-    TreeStack<double> stack;
+    const auto limitOf = [&](double t) { return static_cast<float>(t) * wide; };
+    float limit = limitOf(best.t);
+    TreeStack<float> stack;
     stack.push(0, 0, 0, 0);
     while (stack.size > 0) {
         const auto item = stack.items[--stack.size];
-        if (item.key > best.t) continue;
+        if (item.key > limit) continue;
         if (item.count > 0) {
             for (std::uint32_t i = 0; i < item.count; ++i) {
                 const TreeTriangle& tri = tree.triangles[item.child + i];
                 const double t = hitTriangle(a, d, tri);
                 if (t < best.t || (t == best.t && t <= 1 && tri.id < best.triangle)) best = {t, tri.id};
             }
+            limit = limitOf(best.t);
             continue;
         }
         const TreeNode& node = tree.nodes[item.child];
-        Lanes enter{}, leave = Lanes{} + 1.0;
+        FloatLanes enter{}, leave = FloatLanes{} + limit;
         for (std::size_t k = 0; k < 3; ++k) {
             FloatLanes l, h;
             const bool up = inverse[k] > 0;
             std::memcpy(&l, up ? node.lo[k] : node.hi[k], sizeof l);
             std::memcpy(&h, up ? node.hi[k] : node.lo[k], sizeof h);
-            const Lanes s = (__builtin_convertvector(l, Lanes) - low[k]) * inverse[k];
-            const Lanes e = (__builtin_convertvector(h, Lanes) - high[k]) * inverse[k];
+            const FloatLanes s = (l - low[k]) * inverse[k], e = (h - high[k]) * inverse[k];
             enter = s > enter ? s : enter;
             leave = e < leave ? e : leave;
         }
+        leave *= wide;
         const std::size_t base = stack.size;
         for (std::size_t i = 0; i < 4; ++i)
-            if (node.child[i] != TreeNode::none && enter[i] <= leave[i] && enter[i] <= best.t)
+            if (node.child[i] != TreeNode::none && enter[i] <= leave[i])
                 stack.push(base, enter[i], node.child[i], node.count[i]);
     }
-    return best;
+    return best ? best : SegmentHit{};
 }
 
 bool SurfaceIndex::overlaps(const Box& box) const {

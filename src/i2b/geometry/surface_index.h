@@ -45,7 +45,9 @@ class SurfaceIndex {
     // The first triangle along the closed segment, from a; among equals the lowest number. Rounding decides
     // for the hit (1e-13 of the segment's and the triangle's size), so that nothing slips between triangles
     // sharing an edge.
-    SegmentHit firstHit(const Vec3& a, const Vec3& b) const;
+    SegmentHit firstHit(const Vec3& a, const Vec3& b) const { return firstHit(a, b, 1); }
+    // The same where t <= before, or none: cheaper where the end of the segment lies on the geometry.
+    SegmentHit firstHit(const Vec3& a, const Vec3& b, double before) const;
     // True if any triangle meets the closed box (exact separating-axis test in doubles).
     bool overlaps(const Box& box) const;
     // All triangles whose bounding boxes meet the box, ascending.
