@@ -58,7 +58,8 @@ TEST(ReportWrite, HasTheContractsKeys) {
                                      "min_determinant", "concave_cells"));
     EXPECT_THAT(keys(json["fit"]), testing::ElementsAre("wall_nodes_on_geometry_fraction",
                                                         "mean_distance_in_h", "max_distance_in_h",
-                                                        "feature_capture_fraction", "tilted_face_fraction"));
+                                                        "feature_capture_fraction", "tilted_face_fraction",
+                                                        "tilted_45_face_fraction", "part_border_fraction", "part_border_samples"));
     EXPECT_THAT(keys(json["layers"]), testing::ElementsAre("requested", "mean_count",
                                                            "faces_covered_fraction", "thickness_fraction"));
     EXPECT_THAT(keys(json["patches"][0]), testing::ElementsAre("name", "type", "faces"));

@@ -20,6 +20,7 @@ constexpr double reach = 2.2; // of h: no node is pulled farther to a feature
 // What a wall node sees: its place on the geometry and the unit normal there, towards the fluid.
 struct Foot {
     Vec3 point, normal;
+    std::uint32_t part = 0; // of the geometry
     bool found = false;
 };
 
@@ -29,6 +30,7 @@ Foot footAt(const SurfaceIndex& index, const Vec3& q, const Vec3& fluid, double 
     if (!c) return foot;
     foot.point = c.point;
     foot.normal = index.normal(c.triangle);
+    foot.part = static_cast<std::uint32_t>(index.surface().partOf[c.triangle]);
     if (dot(foot.normal, fluid - c.point) < 0) foot.normal = -foot.normal;
     foot.found = foot.normal != Vec3{};
     return foot;
@@ -107,11 +109,9 @@ Crossing crossingAt(const Band& band, const FeatureIndex& features, const std::v
     return {d, node, -1, {between.kind, own.point, own.tangent}};
 }
 
-// The better end of a wall edge that crosses a feature.
-Crossing crossingOf(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x,
-                    const std::vector<Foot>& feet, std::int32_t p, std::int32_t q) {
-    const auto a = static_cast<std::size_t>(p), b = static_cast<std::size_t>(q);
-    const Between between = lineBetween(index, features, feet[a], feet[b], x[static_cast<std::size_t>(band.frontNode[a])], std::max(band.h[a], band.h[b]));
+// The better end of a wall edge that crosses a line.
+Crossing crossingOf(const Band& band, const FeatureIndex& features, const std::vector<Vec3>& x, const Between& between, std::int32_t p,
+                    std::int32_t q) {
     Crossing first = crossingAt(band, features, x, between, p), second = crossingAt(band, features, x, between, q);
     first.other = q, second.other = p;
     if (first.node < 0 || (second.node >= 0 && second.distance < first.distance)) return second;
@@ -132,6 +132,41 @@ std::array<Crossing, 2> stepOf(const Band& band, const SurfaceIndex& index, cons
     if (turns(feet[a], riser)) found[0] = crossingAt(band, features, x, lineBetween(index, features, feet[a], riser, fluid, h), p);
     if (turns(feet[b], riser)) found[1] = crossingAt(band, features, x, lineBetween(index, features, feet[b], riser, fluid, h), q);
     return found;
+}
+
+// Where the nearest part changes on the way from a foot of one part to a place of another; none if it does not.
+bool partChange(const SurfaceIndex& index, const Foot& from, Vec3 to, Vec3& place) {
+    const auto isOwn = [&](const Vec3& p) {
+        const ClosestPoint c = index.closest(p);
+        return c && static_cast<std::uint32_t>(index.surface().partOf[c.triangle]) == from.part;
+    };
+    if (isOwn(to)) return false;
+    Vec3 own = from.point;
+    for (int i = 0; i < 7; ++i) {
+        const Vec3 middle = (own + to) * 0.5;
+        (isOwn(middle) ? own : to) = middle;
+    }
+    place = index.closest((own + to) * 0.5).point;
+    return true;
+}
+
+// A wall edge from one part to another without a turn. Parts that lie upon each other have no border.
+Between borderBetween(const SurfaceIndex& index, const Foot& a, const Foot& b, double h) {
+    const auto isNear = [&](const Foot& foot, std::uint32_t part) {
+        return bool(index.closest(foot.point, 0.05 * h, [&](std::uint32_t t) { return static_cast<std::uint32_t>(index.surface().partOf[t]) == part; }));
+    };
+    Between border;
+    if (isNear(a, b.part) || isNear(b, a.part) || !partChange(index, a, b.point, border.line.point)) return border;
+    // The border's direction from a second place on it, a little to the side.
+    const Vec3 across = normalized(cross(a.normal, b.point - a.point)) * (0.25 * h);
+    Foot beside = a;
+    beside.point += across;
+    Vec3 second;
+    border.line.tangent = normalized(across);
+    if (partChange(index, beside, b.point + across, second) && norm(second - border.line.point) < h) border.line.tangent = normalized(second - border.line.point);
+    border.line.found = border.line.tangent != Vec3{};
+    border.kind = SnapKind::implicitLine;
+    return border;
 }
 
 bool hangs(const Band& band, std::size_t wall) { return !band.parents[static_cast<std::size_t>(band.frontNode[wall])].empty(); }
@@ -233,10 +268,13 @@ std::size_t snapToFeatures(const Band& band, const Front& front, const SurfaceIn
         if (snaps[a].kind != SnapKind::none || snaps[b].kind != SnapKind::none) return;
         if (hangs(band, a) || hangs(band, b)) return;
         if (turns(feet[a], feet[b])) {
-            crossings[2 * e] = crossingOf(band, index, features, x, feet, p, q);
+            const Vec3& fluid = x[static_cast<std::size_t>(band.frontNode[a])];
+            crossings[2 * e] = crossingOf(band, features, x, lineBetween(index, features, feet[a], feet[b], fluid, std::max(band.h[a], band.h[b])), p, q);
         } else if (feet[a].found && feet[b].found) {
             const std::array<Crossing, 2> ends = stepOf(band, index, features, x, feet, p, q);
             crossings[2 * e] = ends[0], crossings[2 * e + 1] = ends[1];
+            if (ends[0].node >= 0 || ends[1].node >= 0 || feet[a].part == feet[b].part) return;
+            crossings[2 * e] = crossingOf(band, features, x, borderBetween(index, feet[a], feet[b], std::max(band.h[a], band.h[b])), p, q);
         }
     });
     std::erase_if(crossings, [](const Crossing& c) { return c.node < 0; });
@@ -273,7 +311,7 @@ std::size_t splitAlongFeatures(Front& front, const Band& band, const SurfaceInde
         if (line.found && std::abs(dot(line.tangent, normalized(going(q) - going(p)))) > alongLine) return true;
         if (snaps[r].kind != SnapKind::none || snaps[t].kind != SnapKind::none) return false;
         const Foot a = footOf(band, index, x, r), b = footOf(band, index, x, t);
-        return a.found && b.found && dot(a.normal, b.normal) <= smallestTurn;
+        return a.found && b.found && (dot(a.normal, b.normal) <= smallestTurn || a.part != b.part);
     };
     const auto isSnapped = [&](std::size_t n) { return snaps[n].kind != SnapKind::none; };
     parallelFor(faces, [&](std::size_t f) {

@@ -3,7 +3,8 @@
 //
 // A wall edge whose two ends lie on surfaces that differ by more than 25 degrees crosses a feature. Where the soup has a
 // sharp edge there, that is it; where it has none (parts that intersect without a common edge), it is the line in
-// which the tangent planes of the two ends meet, if the geometry confirms it.
+// which the tangent planes of the two ends meet, if the geometry confirms it. Where parts lie flush, the line on which
+// the nearest part changes is one too, so that patches end along mesh edges.
 #pragma once
 #include "i2b/fit/band.h"
 #include "i2b/geometry/features.h"

@@ -381,6 +381,7 @@ FitReport measureFit(const PolyMesh& mesh, const SurfaceIndex& index, const Feat
     const SurfaceIndex sharp(sharpEdges);
     measureNodes(mesh, wall, index, report);
     measureFaces(wall, index, sharp, report);
+    measurePartBorders(mesh, index, report);
     if (sharpEdges.triangles.empty()) return report;
 
     std::vector<double> sizes = wall.faceH;

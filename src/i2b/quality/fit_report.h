@@ -31,6 +31,8 @@ struct FitReport {
     std::int64_t featureSamples = 0;
     double tiltedFaceFraction = 0; // normal over 25 degrees off, more than h from sharp edges
     double tilted45FaceFraction = 0;
+    double partBorderFraction = 1;   // of samples on edges between patches of two parts: within 0.1 h of both parts
+    std::int64_t borderSamples = 0;  // 0: the patches are not named after parts, or nothing borders on anything
     Vec3 farthest; // m, the wall node of maxDistanceInH
 };
 
@@ -39,5 +41,8 @@ struct FitReport {
 // of threads.
 FitReport measureFit(const PolyMesh& mesh, const SurfaceIndex& index, const FeatureGraph& features,
                      const std::vector<std::string>& patches = {});
+
+// The last two figures: four samples an edge; h is the mean of the edge's own and its faces' sizes (square roots of areas).
+void measurePartBorders(const PolyMesh& mesh, const SurfaceIndex& index, FitReport& report);
 
 } // namespace i2b
