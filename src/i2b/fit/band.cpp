@@ -194,18 +194,35 @@ void addPrism(const Band& band, const Front& front, std::size_t f, Pieces& out) 
 
 // Rows of item numbers, ascending in each. row(i, put) calls put(r) for every row of an item.
 template <class Row>
-Csr<std::int32_t> rowsOf(std::size_t rows, std::size_t items, const Row& row) {
+Csr<std::int32_t> rowsOf(std::size_t rows, std::size_t first, std::size_t last, const Row& row) {
     Csr<std::int32_t> csr;
     csr.start.assign(rows + 1, 0);
     const auto raise = [](std::int64_t& n) { return std::atomic_ref<std::int64_t>(n).fetch_add(1, std::memory_order_relaxed); };
-    parallelFor(items, [&](std::size_t i) { row(i, [&](std::size_t r) { raise(csr.start[r]); }); });
+    parallelFor(last - first, [&](std::size_t i) { row(first + i, [&](std::size_t r) { raise(csr.start[r]); }); });
     csr.values.resize(static_cast<std::size_t>(exclusiveScan(csr.start)));
     std::vector<std::int64_t> next(csr.start.begin(), csr.start.end() - 1);
-    parallelFor(items, [&](std::size_t i) {
-        row(i, [&](std::size_t r) { csr.values[static_cast<std::size_t>(raise(next[r]))] = static_cast<std::int32_t>(i); });
+    parallelFor(last - first, [&](std::size_t i) {
+        row(first + i, [&](std::size_t r) { csr.values[static_cast<std::size_t>(raise(next[r]))] = static_cast<std::int32_t>(first + i); });
     });
-    parallelFor(rows, [&](std::size_t r) { std::sort(csr.values.data() + csr.start[r], csr.values.data() + csr.start[r + 1]); });
+    parallelFor(rows, [&](std::size_t r) { // nearly in order already
+        std::int32_t* const v = csr.values.data() + csr.start[r];
+        for (std::int64_t i = 1; i < csr.start[r + 1] - csr.start[r]; ++i) {
+            const std::int32_t n = v[i];
+            std::int64_t at = i;
+            for (; at > 0 && v[at - 1] > n; --at) v[at] = v[at - 1];
+            v[at] = n;
+        }
+    });
     return csr;
+}
+
+// Rows of corners [first, last), numbers ascending.
+Csr<std::int32_t> rowsOfCorners(const Band& band, std::size_t rows, std::size_t first, std::size_t last) {
+    return rowsOf(rows, first, last, [&](std::size_t c, const auto& put) {
+        for (std::int32_t n : band.corners[c].node) {
+            if (static_cast<std::size_t>(n) < rows) put(static_cast<std::size_t>(n));
+        }
+    });
 }
 
 // The same edges from both ends, by node and by other end; make(a, b) gives the edge.
@@ -259,10 +276,22 @@ void addPrisms(Band& band, const Front& front) {
         pieces[chunk].settle();
     });
     appendCorners(band, pieces);
-    band.cornersOf = rowsOf(band.movable, band.corners.size(), [&](std::size_t c, const auto& put) {
-        for (std::int32_t n : band.corners[c].node) {
-            if (static_cast<std::size_t>(n) < band.movable) put(static_cast<std::size_t>(n));
-        }
+    // In a row the core's corners come first: those of the prisms that were there before are left out.
+    const Csr<std::int32_t> core = std::move(band.cornersOf);
+    const std::size_t touched = band.walls + band.fronts;
+    const Csr<std::int32_t> prisms = rowsOfCorners(band, touched, band.coreCorners, band.corners.size());
+    const auto isCore = [&](std::int32_t c) { return static_cast<std::size_t>(c) < band.coreCorners; };
+    const auto coreOf = [&](std::size_t n) { return std::span(core[n].begin(), n < touched ? std::partition_point(core[n].begin(), core[n].end(), isCore) : core[n].end()); };
+    band.cornersOf.start.resize(band.movable + 1);
+    parallelFor(band.movable, [&](std::size_t n) {
+        band.cornersOf.start[n] = static_cast<std::int64_t>(coreOf(n).size() + (n < touched ? prisms[n].size() : 0));
+    });
+    band.cornersOf.start[band.movable] = 0;
+    band.cornersOf.values.resize(static_cast<std::size_t>(exclusiveScan(band.cornersOf.start)));
+    parallelFor(band.movable, [&](std::size_t n) {
+        const auto own = coreOf(n);
+        std::int32_t* const to = std::copy(own.begin(), own.end(), band.cornersOf.values.data() + band.cornersOf.start[n]);
+        if (n < touched) std::copy(prisms[n].begin(), prisms[n].end(), to);
     });
     const Csr<BandEdge> wall = edgesOf(band.walls, pieces, [&](std::int32_t a, std::int32_t b) { return wallEdge(band, a, b); });
     // Each wall node has its front node last: higher in number than all wall nodes.
@@ -373,7 +402,7 @@ Band buildBand(const LatticeMesh& mesh, const Front& front, int rings) {
     parallelFor(band.walls, [&](std::size_t v) { band.frontNode[v] = nodeOf[static_cast<std::size_t>(front.corePoint[v])]; });
     band.inside.resize(band.fronts);
     band.behind.assign(band.fronts, 0);
-    band.fansOf = rowsOf(band.fronts, band.walls,
+    band.fansOf = rowsOf(band.fronts, 0, band.walls,
                          [&](std::size_t v, const auto& put) { put(static_cast<std::size_t>(band.frontNode[v]) - band.walls); });
     parallelFor(band.fronts, [&](std::size_t i) { band.inside[i] = front.inside[static_cast<std::size_t>(band.fansOf[i].back())]; });
 
@@ -413,13 +442,13 @@ Band buildBand(const LatticeMesh& mesh, const Front& front, int rings) {
         return e;
     });
     pieces = {};
+    band.cornersOf = rowsOfCorners(band, band.movable, 0, band.coreCorners);
     addPrisms(band, front);
     return band;
 }
 
 void renewPrisms(Band& band, const Front& front) {
     band.corners.resize(band.coreCorners);
-    band.cornersOf = {};
     addPrisms(band, front);
 }
 

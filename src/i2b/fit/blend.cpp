@@ -110,6 +110,16 @@ double scaledJacobian(const Corner& c, const std::vector<Vec3>& x) {
     return l > 0 ? dot(cross(e1, e2), e3) / l : -1;
 }
 
+std::vector<std::uint8_t> nodesOfPoorCorners(const Band& band, const std::vector<Vec3>& x, double limit) {
+    std::vector<std::uint8_t> poor(band.nodes(), 0);
+    parallelFor(band.corners.size(), [&](std::size_t c) {
+        if (!(cornerEnergy(band.corners[c], x) > limit)) return;
+        for (std::int32_t n : band.corners[c].node) mark(poor[static_cast<std::size_t>(n)]);
+    });
+    poor.resize(band.movable);
+    return poor;
+}
+
 std::vector<double> blend(const Band& band, const std::vector<Vec3>& start, const std::vector<Vec3>& goal, std::vector<Vec3>& x) {
     Progress progress(band.movable);
     x = start;

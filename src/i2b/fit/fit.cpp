@@ -25,11 +25,8 @@ void grow(const Band& band, std::vector<std::uint8_t>& marked, int rings) {
 
 // Nodes off their target or in a poor corner, and two rings around them.
 std::vector<std::uint8_t> activeNodes(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x) {
-    std::vector<std::uint8_t> active(band.movable, 0);
+    std::vector<std::uint8_t> active = nodesOfPoorCorners(band, x, poorEnergy);
     parallelFor(band.movable, [&](std::size_t n) {
-        for (std::int32_t c : band.cornersOf[n]) {
-            if (cornerEnergy(band.corners[static_cast<std::size_t>(c)], x) > poorEnergy) active[n] = 1;
-        }
         if (n < band.walls && !active[n]) {
             const WallTarget t = wallTarget(index, band, n, x[static_cast<std::size_t>(band.frontNode[n])], x[n]);
             active[n] = t.found && norm(t.point - x[n]) > offTarget * band.h[n];
