@@ -31,7 +31,7 @@ struct FitReport {
     std::int64_t featureSamples = 0;
     double tiltedFaceFraction = 0; // normal over 25 degrees off, more than h from sharp edges
     double tilted45FaceFraction = 0;
-    double partBorderFraction = 1;   // of samples on edges between patches of two parts: within 0.1 h of both parts
+    double partBorderFraction = 1;   // of samples on edges between patches of two parts: the nearest part changes so within 0.1 h
     std::int64_t borderSamples = 0;  // 0: the patches are not named after parts, or nothing borders on anything
     Vec3 farthest; // m, the wall node of maxDistanceInH
 };
@@ -42,7 +42,8 @@ struct FitReport {
 FitReport measureFit(const PolyMesh& mesh, const SurfaceIndex& index, const FeatureGraph& features,
                      const std::vector<std::string>& patches = {});
 
-// The last two figures: four samples an edge; h is the mean of the edge's own and its faces' sizes (square roots of areas).
+// The last two figures. Four samples an edge; at 0.1 h to either side of it the nearest part must be that of the patch
+// there, h being the mean of the edge's own and its faces' sizes (square roots of areas).
 void measurePartBorders(const PolyMesh& mesh, const SurfaceIndex& index, FitReport& report);
 
 } // namespace i2b

@@ -42,17 +42,24 @@ void measurePartBorders(const PolyMesh& mesh, const SurfaceIndex& index, FitRepo
         if (edges[i].a == edges[i + 1].a && edges[i].b == edges[i + 1].b && edges[i].part != edges[i + 1].part) borders.push_back(i);
     }
     constexpr int samples = 4;
-    const auto onBoth = [&](std::size_t i) {
+    const auto nearestPart = [&](const Vec3& q) {
+        const ClosestPoint c = index.closest(q);
+        return c ? static_cast<std::int32_t>(index.surface().partOf[c.triangle]) : -1;
+    };
+    const auto onBorder = [&](std::size_t i) {
         const PatchEdge &first = edges[i], &second = edges[i + 1];
         const Vec3 &a = mesh.points[static_cast<std::size_t>(first.a)], &b = mesh.points[static_cast<std::size_t>(first.b)];
-        const double h = (norm(b - a) + std::sqrt(norm(measureFace(mesh, first.face).area)) + std::sqrt(norm(measureFace(mesh, second.face).area))) / 3;
+        const FaceShape one = measureFace(mesh, first.face), other = measureFace(mesh, second.face);
+        const double reach = 0.1 * (norm(b - a) + std::sqrt(norm(one.area)) + std::sqrt(norm(other.area))) / 3;
+        const Vec3 along = normalized(b - a);
         std::int64_t count = 0;
         for (int k = 0; k < samples; ++k) {
             const Vec3 p = a + (b - a) * ((k + 0.5) / samples);
-            const auto isNear = [&](std::int32_t part) {
-                return bool(index.closest(p, 0.1 * h, [&](std::uint32_t t) { return static_cast<std::int32_t>(index.surface().partOf[t]) == part; }));
+            const auto beside = [&](const FaceShape& face) {
+                const Vec3 way = face.centre - p;
+                return p + normalized(way - along * dot(way, along)) * reach;
             };
-            count += isNear(first.part) && isNear(second.part);
+            count += nearestPart(beside(one)) == first.part && nearestPart(beside(other)) == second.part;
         }
         return count;
     };
@@ -60,7 +67,7 @@ void measurePartBorders(const PolyMesh& mesh, const SurfaceIndex& index, FitRepo
         borders.size(), std::int64_t(0),
         [&](std::size_t begin, std::size_t end) {
             std::int64_t n = 0;
-            for (std::size_t i = begin; i < end; ++i) n += onBoth(borders[i]);
+            for (std::size_t i = begin; i < end; ++i) n += onBorder(borders[i]);
             return n;
         },
         [](std::int64_t x, std::int64_t y) { return x + y; }, 256);
