@@ -86,7 +86,7 @@ void give(std::vector<Mask::Ptr>& kept, const std::vector<Place>& cells) {
     for (const Place& cell : cells) kept[std::size_t(cell.level)]->setValueOn(toCoord(cell.at));
 }
 
-// taken: kept cells of the regions before, by level; none for the first.
+// taken: cells of other zones, by level; none where there are no others.
 Carved carveRegion(const CellGrid& grid, const CutCells& cut, const Regions& regions, const Region& region, const SurfaceIndex& index,
                    const FitOptions& options, const std::vector<Mask::Ptr>& taken) {
     Carved result;
@@ -115,19 +115,30 @@ Carved carveRegion(const CellGrid& grid, const CutCells& cut, const Regions& reg
     return result;
 }
 
+// What a zone's cells must not touch: those of the zones carved before, and all painted cells of those to come.
+std::vector<Mask::Ptr> otherZones(const CellGrid& grid, const Regions& regions, const Region& own, const std::vector<std::vector<Mask::Ptr>>& carved) {
+    std::vector<Mask::Ptr> others;
+    const auto add = [&](const std::vector<Mask::Ptr>& cells) {
+        for (std::size_t l = 0; l < grid.levels.size(); ++l) {
+            if (others.size() <= l) others.push_back(std::make_shared<Mask>(false));
+            others[l]->topologyUnion(*cells[l]);
+        }
+    };
+    for (const std::vector<Mask::Ptr>& zone : carved) add(zone);
+    for (const Region& region : regions.table) {
+        if (region.painted && region.id > own.id) add(regions.cellsOf(region.id));
+    }
+    return others;
+}
+
 } // namespace
 
 KeptCells carve(const CellGrid& grid, const CutCells& cut, const Regions& regions, const SurfaceIndex& index,
                 const FitOptions& options) {
     KeptCells kept;
-    const auto painted = std::count_if(regions.table.begin(), regions.table.end(), [](const Region& r) { return r.painted; });
-    const bool several = painted > 1;
-    std::vector<Mask::Ptr> taken;
-    for (std::size_t l = 0; l < grid.levels.size() && several; ++l) taken.push_back(std::make_shared<Mask>(false));
     for (const Region& region : regions.table) {
         if (!region.painted) continue;
-        Carved carved = carveRegion(grid, cut, regions, region, index, options, taken);
-        for (std::size_t l = 0; l < grid.levels.size() && several; ++l) taken[l]->topologyUnion(*carved.cells[l]);
+        Carved carved = carveRegion(grid, cut, regions, region, index, options, otherZones(grid, regions, region, kept.zones));
         kept.carvedForClearance += carved.clearance;
         kept.givenInPassages += carved.given;
         kept.carvedForFront += carved.front;

@@ -19,7 +19,7 @@ struct RoomOptions {
 // way lies within h / 8 of any sheet that it passes, so a crack narrower than 0.33 h lets none through.
 class Room {
   public:
-    // kept: of the region; looked at as it is when asked, never changed here. taken: of regions carved before.
+    // kept: of the region; looked at as it is when asked, never changed here. taken: cells of other zones.
     Room(const CellGrid& grid, const CutCells& cut, const Regions& regions, const Region& region, const std::vector<Mask::Ptr>& kept,
          const std::vector<Mask::Ptr>& taken, const SurfaceIndex& index, const RoomOptions& options = {});
 
