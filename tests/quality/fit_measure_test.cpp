@@ -162,6 +162,33 @@ TEST(FitMeasure, patches) {
     EXPECT_EQ(fit(mesh, Surface{}).wallNodesOnGeometryFraction, 1);
 }
 
+// The top is a part of its own: the 4 n edges around it, four samples each, lie on its border; with the border of the
+// geometry a quarter of a cell below, none does. Patches that are not named after parts are not asked.
+TEST(FitMeasure, bordersBetweenParts) {
+    PolyMesh mesh = cubeWall([](Vec3 p) { return p; });
+    mesh.patches[1].type = "wall";
+    const auto measure = [&](double border) {
+        Surface s = box(border);
+        s.parts = {{"body", "", 12}, {"top", "", 12}};
+        const Surface above = box(1 - border);
+        const auto first = static_cast<std::uint32_t>(s.points.size());
+        for (const Vec3& p : above.points) s.points.push_back({p.x, p.y, p.z + border});
+        for (std::size_t t = 0; t < above.triangles.size(); ++t) {
+            const auto& v = above.triangles[t];
+            const bool between = above.points[v[0]].z + above.points[v[1]].z + above.points[v[2]].z == 0;
+            if (between) continue; // the side that both boxes share
+            s.triangles.push_back({first + v[0], first + v[1], first + v[2]});
+            s.partOf.push_back(1);
+        }
+        return fit(mesh, s);
+    };
+    const FitReport on = measure(1 - 1e-6), off = measure(1 - 0.25 * h);
+    EXPECT_EQ(on.borderSamples, 4 * 4 * n);
+    EXPECT_DOUBLE_EQ(on.partBorderFraction, 1);
+    EXPECT_DOUBLE_EQ(off.partBorderFraction, 0);
+    EXPECT_EQ(fit(mesh, box(1)).borderSamples, 0);
+}
+
 // A line of many short edges is sampled like one long edge: by length, not by edge.
 TEST(FitMeasure, samplesByLength) {
     Surface s = box(1);
