@@ -11,11 +11,6 @@
 namespace i2b {
 namespace {
 
-void sortUnique(std::vector<Place>& places) {
-    std::sort(places.begin(), places.end());
-    places.erase(std::unique(places.begin(), places.end()), places.end());
-}
-
 // Every place asks for cells to go; the list is the same whatever the threads did.
 template <class Ask>
 std::vector<Place> collect(const std::vector<Place>& places, const CellGrid& grid, const std::vector<Mask::Ptr>& kept,

@@ -20,11 +20,6 @@ struct Toggle {
     }
 };
 
-void sortUnique(std::vector<Place>& places) {
-    std::sort(places.begin(), places.end());
-    places.erase(std::unique(places.begin(), places.end()), places.end());
-}
-
 class Shaper {
   public:
     Shaper(std::vector<Mask::Ptr>& kept, const CellGrid& grid, const SurfaceIndex& index, const Room* room)
@@ -237,6 +232,11 @@ ShapingSummary Shaper::run() {
 }
 
 } // namespace
+
+void sortUnique(std::vector<Place>& places) {
+    std::sort(places.begin(), places.end());
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+}
 
 std::vector<Place> placesOf(const std::vector<Mask::Ptr>& masks) {
     std::vector<Place> places;
