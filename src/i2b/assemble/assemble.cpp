@@ -34,15 +34,58 @@ struct Cursor {
 struct Pending { // an internal face waiting to be put in order of its neighbour
     std::int32_t neighbour = 0;
     std::uint8_t n = 0;
-    std::array<std::int32_t, 8> points{};
+    std::array<std::int32_t, 16> points{};
+
+    Pending() = default;
+    Pending(std::int32_t across, std::size_t count, const std::array<std::int32_t, 8>& vertices) : neighbour(across), n(static_cast<std::uint8_t>(count)) {
+        std::copy(vertices.begin(), vertices.end(), points.begin());
+    }
+};
+
+// Core edges along the front into which the fit has put a vertex.
+class DividedEdges {
+  public:
+    explicit DividedEdges(const Front& front) {
+        if (front.inserted.empty()) return;
+        isEnd_.assign(static_cast<std::size_t>(front.corePoints), false);
+        for (std::size_t i = 0; i < front.inserted.size(); ++i) {
+            const auto [v, w] = front.inserted[i].ends;
+            const auto [a, b] = std::minmax(front.corePoint[std::size_t(v)], front.corePoint[std::size_t(w)]);
+            edges_.push_back({a, b, front.corePoint[front.firstInserted() + i]});
+            isEnd_[std::size_t(a)] = isEnd_[std::size_t(b)] = true;
+        }
+        std::sort(edges_.begin(), edges_.end());
+    }
+    // Every polygon along such an edge has its vertex too.
+    void addTo(Pending& p) const {
+        if (edges_.empty()) return;
+        Pending out = p;
+        out.n = 0;
+        for (std::size_t i = 0; i < p.n; ++i) {
+            out.points[out.n++] = p.points[i];
+            const auto [a, b] = std::minmax(p.points[i], p.points[(i + 1) % p.n]);
+            if (!isEnd_[std::size_t(a)] || !isEnd_[std::size_t(b)]) continue;
+            const auto e = std::lower_bound(edges_.begin(), edges_.end(), Edge{a, b, 0});
+            if (e != edges_.end() && e->a == a && e->b == b) out.points[out.n++] = e->point;
+        }
+        p = out;
+    }
+
+  private:
+    struct Edge {
+        std::int32_t a, b, point;
+        friend auto operator<=>(const Edge&, const Edge&) = default;
+    };
+    std::vector<Edge> edges_; // a < b: its ends; sorted
+    std::vector<bool> isEnd_; // per core point
 };
 
 class Assembler {
   public:
     explicit Assembler(const AssembleInput& in)
         : in_(in), layers_(in.layers.count), coreCells_(static_cast<std::int32_t>(in.lattice.cellCount())),
-          corePoints_(static_cast<std::int32_t>(in.lattice.pointCount())),
-          frontFaces_(in.front.ownerCell.size()) {}
+          corePoints_(in.front.corePoints + static_cast<std::int32_t>(in.front.inserted.size())),
+          frontFaces_(in.front.ownerCell.size()), divided_(in.front) {}
 
     PolyMesh run();
 
@@ -77,6 +120,7 @@ class Assembler {
     const AssembleInput& in_;
     std::int32_t layers_, coreCells_, corePoints_;
     std::size_t frontFaces_;
+    DividedEdges divided_;
     std::vector<Chunk> chunks_;
     std::int64_t sideFaces_ = 0, sideVertices_ = 0; // faces before the walls
 };
@@ -103,7 +147,8 @@ void Assembler::coreFaces(int level, std::size_t node, LatticeMesh::Reader& read
     bits::forEach(leafBits(&cells.leaf(node)), [&](int x, int y, int z) {
         pending.clear();
         reader.faces(level, {o[0] + x, o[1] + y, o[2] + z}, [&](const CellFace& face) {
-            Pending p{0, face.vertices, face.points};
+            Pending p(0, face.vertices, face.points);
+            if (face.kind != FaceKind::front) divided_.addTo(p);
             if (face.kind == FaceKind::side) return emit(std::size_t(1) + face.side, rank, p);
             if (face.kind == FaceKind::internal) {
                 if (face.other < rank) return;

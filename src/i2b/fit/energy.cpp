@@ -49,19 +49,15 @@ WallTerm wallTerm(const Band& band, const SurfaceIndex& index, const FeatureInde
         if (target.found) term.add(target.normal, x[n] - target.point);
         return term;
     }
-    Vec3 point = snap.point, tangent = snap.tangent;
-    if (snap.kind == SnapKind::line) {
-        const FeatureIndex::Line line = features.closestLine(x[n], 0.5 * band.h[n]);
-        if (line.found) point = line.point, tangent = line.tangent;
-    }
-    const Vec3 way = x[n] - point;
+    const FeatureIndex::Line line = snapLine(index, features, snap, x[n], band.h[n]);
+    const Vec3 way = x[n] - line.point;
     if (snap.kind == SnapKind::corner) {
         term.add({1, 0, 0}, way), term.add({0, 1, 0}, way), term.add({0, 0, 1}, way);
         return term;
     }
-    const Vec3 axis = std::abs(tangent.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    const Vec3 u = normalized(cross(tangent, axis));
-    term.add(u, way), term.add(cross(tangent, u), way);
+    const Vec3 axis = std::abs(line.tangent.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    const Vec3 u = normalized(cross(line.tangent, axis));
+    term.add(u, way), term.add(cross(line.tangent, u), way);
     return term;
 }
 

@@ -1,6 +1,8 @@
 #include "i2b/fit/features.h"
 #include "i2b/core/parallel.h"
+#include "i2b/fit/between.h"
 #include "i2b/fit/fit.h"
+#include "i2b/front/replace_faces.h"
 #include <algorithm>
 
 namespace i2b {
@@ -8,94 +10,18 @@ namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180;
 const double smallestTurn = std::cos(25 * degree);
-const double confirmedTurn = std::cos(35 * degree);
 const double flatCorner = std::cos(140 * degree), thinCorner = std::cos(12 * degree);
-constexpr double besideLine = 0.25; // of h: steps off a line along the planes that meet in it
-constexpr double roundedOff = 0.25; // of h: so far from the geometry two planes may meet where an edge is rounded
 constexpr double steps = 0.08;      // of h: a wall edge whose middle is farther off than this cuts across something
 constexpr double onLine = 0.05;   // of h: so far from a sharp edge the middle of a cut may be
 const double alongLine = std::cos(20 * degree);
+constexpr double onGeometry = 0.3; // of h: so far the geometry may bend away from a line along its tangent
 constexpr double reach = 2.2; // of h: no node is pulled farther to a feature
-
-// What a wall node sees: its place on the geometry and the unit normal there, towards the fluid.
-struct Foot {
-    Vec3 point, normal;
-    std::uint32_t part = 0; // of the geometry
-    bool found = false;
-};
-
-Foot footAt(const SurfaceIndex& index, const Vec3& q, const Vec3& fluid, double radius) {
-    Foot foot;
-    const ClosestPoint c = index.closest(q, radius);
-    if (!c) return foot;
-    foot.point = c.point;
-    foot.normal = index.normal(c.triangle);
-    foot.part = static_cast<std::uint32_t>(index.surface().partOf[c.triangle]);
-    if (dot(foot.normal, fluid - c.point) < 0) foot.normal = -foot.normal;
-    foot.found = foot.normal != Vec3{};
-    return foot;
-}
-
-Foot footOf(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, std::size_t b) {
-    const Vec3 f = seenFront(index, band, b, x[static_cast<std::size_t>(band.frontNode[b])]);
-    const Vec3 way = f - x[b];
-    const double length = norm(way);
-    const Vec3 q = length > 0 ? x[b] + way * std::min(1.0, 0.1 * band.h[b] / length) : x[b];
-    return footAt(index, q, f, 2 * band.reach[b]);
-}
-
-bool turns(const Foot& a, const Foot& b) {
-    const double c = dot(a.normal, b.normal);
-    return a.found && b.found && c < smallestTurn;
-}
-
-// The line in which the tangent planes of two feet meet, looked at again on the geometry three times.
-FeatureIndex::Line implicitLine(const SurfaceIndex& index, Foot a, Foot b, const Vec3& fluid, double h) {
-    FeatureIndex::Line line;
-    Vec3 middle = (a.point + b.point) * 0.5;
-    for (int round = 0; round < 3; ++round) {
-        const Vec3 t = cross(a.normal, b.normal);
-        const double s = norm2(t);
-        if (s < 0.15) return line; // planes within 23 degrees
-        // Nearest point to the middle on both planes: middle + u na + v nb.
-        const double c = dot(a.normal, b.normal), da = dot(a.normal, a.point - middle), db = dot(b.normal, b.point - middle);
-        const Vec3 p = middle + a.normal * ((da - c * db) / s) + b.normal * ((db - c * da) / s);
-        if (norm(p - (a.point + b.point) * 0.5) > 1.5 * h) return line;
-        line.point = p;
-        line.tangent = t / std::sqrt(s);
-        // Step off the line along each plane, to the side of its own foot.
-        const auto along = [&](const Foot& foot) {
-            const Vec3 d = foot.point - p;
-            const Vec3 inPlane = d - line.tangent * dot(d, line.tangent) - foot.normal * dot(d, foot.normal);
-            return normalized(inPlane) * (besideLine * h);
-        };
-        const Foot na = footAt(index, p + along(a), fluid, h), nb = footAt(index, p + along(b), fluid, h);
-        if (!na.found || !nb.found) return line;
-        a = na, b = nb, middle = p;
-    }
-    const ClosestPoint on = index.closest(line.point, roundedOff * h);
-    if (on) line.point = on.point; // of a rounded edge the middle
-    line.found = on && dot(a.normal, b.normal) < confirmedTurn;
-    return line;
-}
 
 struct Crossing {
     double distance = 0; // in h
     std::int32_t node = -1, other = -1;
     Snap snap;
 };
-
-// The feature between two feet: a sharp edge of the soup, or else the line in which their tangent planes meet.
-struct Between {
-    FeatureIndex::Line line;
-    SnapKind kind = SnapKind::none;
-};
-
-Between lineBetween(const SurfaceIndex& index, const FeatureIndex& features, const Foot& a, const Foot& b, const Vec3& fluid, double h) {
-    const FeatureIndex::Line line = features.closestLine((a.point + b.point) * 0.5, 0.8 * norm(a.point - b.point));
-    if (line.found) return {line, SnapKind::line};
-    return {implicitLine(index, a, b, fluid, h), SnapKind::implicitLine};
-}
 
 // A node on its way to a line; none where that is too far or the node may not be snapped.
 Crossing crossingAt(const Band& band, const FeatureIndex& features, const std::vector<Vec3>& x, const Between& between, std::int32_t node) {
@@ -132,41 +58,6 @@ std::array<Crossing, 2> stepOf(const Band& band, const SurfaceIndex& index, cons
     if (turns(feet[a], riser)) found[0] = crossingAt(band, features, x, lineBetween(index, features, feet[a], riser, fluid, h), p);
     if (turns(feet[b], riser)) found[1] = crossingAt(band, features, x, lineBetween(index, features, feet[b], riser, fluid, h), q);
     return found;
-}
-
-// Where the nearest part changes on the way from a foot of one part to a place of another; none if it does not.
-bool partChange(const SurfaceIndex& index, const Foot& from, Vec3 to, Vec3& place) {
-    const auto isOwn = [&](const Vec3& p) {
-        const ClosestPoint c = index.closest(p);
-        return c && static_cast<std::uint32_t>(index.surface().partOf[c.triangle]) == from.part;
-    };
-    if (isOwn(to)) return false;
-    Vec3 own = from.point;
-    for (int i = 0; i < 7; ++i) {
-        const Vec3 middle = (own + to) * 0.5;
-        (isOwn(middle) ? own : to) = middle;
-    }
-    place = index.closest((own + to) * 0.5).point;
-    return true;
-}
-
-// A wall edge from one part to another without a turn. Parts that lie upon each other have no border.
-Between borderBetween(const SurfaceIndex& index, const Foot& a, const Foot& b, double h) {
-    const auto isNear = [&](const Foot& foot, std::uint32_t part) {
-        return bool(index.closest(foot.point, 0.05 * h, [&](std::uint32_t t) { return static_cast<std::uint32_t>(index.surface().partOf[t]) == part; }));
-    };
-    Between border;
-    if (isNear(a, b.part) || isNear(b, a.part) || !partChange(index, a, b.point, border.line.point)) return border;
-    // The border's direction from a second place on it, a little to the side.
-    const Vec3 across = normalized(cross(a.normal, b.point - a.point)) * (0.25 * h);
-    Foot beside = a;
-    beside.point += across;
-    Vec3 second;
-    border.line.tangent = normalized(across);
-    if (partChange(index, beside, b.point + across, second) && norm(second - border.line.point) < h) border.line.tangent = normalized(second - border.line.point);
-    border.line.found = border.line.tangent != Vec3{};
-    border.kind = SnapKind::implicitLine;
-    return border;
 }
 
 bool hangs(const Band& band, std::size_t wall) { return !band.parents[static_cast<std::size_t>(band.frontNode[wall])].empty(); }
@@ -248,11 +139,18 @@ ClosestPoint FeatureIndex::closestCorner(const Vec3& q, double radius) const {
     return cornerIndex_ ? cornerIndex_->closest(q, radius) : ClosestPoint{};
 }
 
-Vec3 snapTarget(const FeatureIndex& features, const Snap& snap, const Vec3& x, double h) {
-    if (snap.kind == SnapKind::implicitLine) return snap.point + snap.tangent * dot(x - snap.point, snap.tangent);
-    if (snap.kind != SnapKind::line) return snap.point;
-    const FeatureIndex::Line line = features.closestLine(x, 0.5 * h);
-    return line.found ? line.point : snap.point;
+FeatureIndex::Line snapLine(const SurfaceIndex& index, const FeatureIndex& features, const Snap& snap, const Vec3& x, double h) {
+    FeatureIndex::Line line{snap.point, snap.tangent, true};
+    if (snap.kind == SnapKind::line) {
+        const FeatureIndex::Line now = features.closestLine(x, 0.5 * h);
+        if (now.found) line = now;
+    }
+    if (snap.kind == SnapKind::implicitLine) { // straight, which the geometry need not be
+        line.point += snap.tangent * dot(x - snap.point, snap.tangent);
+        const ClosestPoint c = index.closest(line.point, onGeometry * h);
+        if (c) line.point = c.point;
+    }
+    return line;
 }
 
 std::size_t snapToFeatures(const Band& band, const Front& front, const SurfaceIndex& index, const FeatureIndex& features,
@@ -330,45 +228,16 @@ std::size_t splitAlongFeatures(Front& front, const Band& band, const SurfaceInde
             if (corner < widest) widest = corner, diagonal[f] = static_cast<std::int8_t>(d);
         }
     });
-    std::size_t count = 0;
-    Front split;
-    split.mesh.reserve(front.mesh.n_vertices(), front.mesh.n_edges() + faces / 8, faces + faces / 8);
-    for (auto v : front.mesh.vertices()) split.mesh.add_vertex(front.mesh.point(v));
-    std::vector<FrontMesh::VertexHandle> polygon;
-    const auto add = [&](std::size_t f, std::initializer_list<std::int32_t> v, std::uint8_t pieces) {
-        polygon.clear();
-        for (std::int32_t i : v) polygon.emplace_back(i);
-        split.mesh.add_face(polygon);
-        split.ownerCell.push_back(front.ownerCell[f]);
-        split.part.push_back(front.part[f]);
-        split.level.push_back(front.level[f]);
-        split.pieces.push_back(pieces);
-    };
+    std::vector<FaceCut> cuts;
     for (std::size_t f = 0; f < faces; ++f) {
+        if (diagonal[f] < 0) continue;
         std::array<std::int32_t, 8> v{};
-        const std::size_t n = verticesOf(f, v);
-        if (diagonal[f] >= 0) {
-            const auto d = static_cast<std::size_t>(diagonal[f]);
-            add(f, {v[d], v[d + 1], v[d + 2]}, 2);
-            add(f, {v[d], v[d + 2], v[(d + 3) % 4]}, 0);
-            ++count;
-            continue;
-        }
-        polygon.clear();
-        for (std::size_t i = 0; i < n; ++i) polygon.emplace_back(v[i]);
-        split.mesh.add_face(polygon);
-        split.ownerCell.push_back(front.ownerCell[f]);
-        split.part.push_back(front.part[f]);
-        split.level.push_back(front.level[f]);
-        split.pieces.push_back(front.pieces[f]);
+        verticesOf(f, v);
+        const auto d = static_cast<std::size_t>(diagonal[f]);
+        cuts.push_back({static_cast<std::int32_t>(f), {{v[d], v[d + 1], v[d + 2]}, {v[d], v[d + 2], v[(d + 3) % 4]}}});
     }
-    if (count == 0) return 0;
-    front.mesh = std::move(split.mesh);
-    front.ownerCell = std::move(split.ownerCell);
-    front.part = std::move(split.part);
-    front.level = std::move(split.level);
-    front.pieces = std::move(split.pieces);
-    return count;
+    replaceFaces(front, cuts);
+    return cuts.size();
 }
 
 } // namespace i2b

@@ -39,8 +39,8 @@ struct Snap { // what a wall node is held to
     Vec3 tangent; // unit, of the line
 };
 
-// Where on its feature a snapped node at x should be. h: m, the size of the cells around.
-Vec3 snapTarget(const FeatureIndex& features, const Snap& snap, const Vec3& x, double h);
+// Where on its feature a snapped node at x should be, and the feature's direction there. h: m, the size of the cells around.
+FeatureIndex::Line snapLine(const SurfaceIndex& index, const FeatureIndex& features, const Snap& snap, const Vec3& x, double h);
 
 // Snaps further nodes, nearest crossings first, one end of an edge at most; those already in snaps stay.
 // Gives how many were added.

@@ -1,6 +1,7 @@
 #include "i2b/fit/fit.h"
 #include "i2b/core/parallel.h"
 #include "i2b/fit/corner.h"
+#include "i2b/fit/insert.h"
 #include <algorithm>
 
 namespace i2b {
@@ -52,10 +53,10 @@ void store(const Band& band, const std::vector<Vec3>& x, Front& front) {
 
 // Lets go of nodes that could not come near the feature that they are held to: on the surface beside it they serve
 // better. Gives how many.
-std::size_t releaseUnreached(const Band& band, const FeatureIndex& features, const std::vector<Vec3>& x, std::vector<Snap>& snaps) {
+std::size_t releaseUnreached(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x, std::vector<Snap>& snaps) {
     std::vector<std::uint8_t> released(band.walls, 0);
     parallelFor(band.walls, [&](std::size_t n) {
-        if (snaps[n].kind == SnapKind::none || norm(snapTarget(features, snaps[n], x[n], band.h[n]) - x[n]) <= unreached * band.h[n]) return;
+        if (snaps[n].kind == SnapKind::none || norm(snapLine(index, features, snaps[n], x[n], band.h[n]).point - x[n]) <= unreached * band.h[n]) return;
         snaps[n] = {};
         released[n] = 1;
     });
@@ -113,11 +114,12 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     pull({1e3, 1e5});
     if (options.features) snapAndSplit(); // what has come into view since
     pull({1e6, 1e6});
-    if (options.features && releaseUnreached(band, features, x, snaps) > 0) pull({1e4, 1e6});
+    if (options.features && releaseUnreached(band, index, features, x, snaps) > 0) pull({1e4, 1e6});
     snapExactly(band, index, features, snaps, x, energy);
     for (const Snap& s : snaps) summary.snapped += s.kind != SnapKind::none;
     for (std::uint8_t a : active) summary.active += a;
     store(band, x, front);
+    if (options.features && getenv("INS")) summary.inserted = insertVertices(front, band, index, features, x, snaps);
     return summary;
 }
 

@@ -23,6 +23,7 @@ struct FitSummary {
     std::size_t active = 0;       // nodes that the energy worked on
     std::size_t snapped = 0;      // wall nodes held to a feature
     std::size_t split = 0;        // front faces split along one
+    std::size_t inserted = 0;     // vertices put where an edge crosses one
 };
 
 // Moves the front's vertices (front and wall positions, movedPoints). Every corner stays positive.

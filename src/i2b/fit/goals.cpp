@@ -6,20 +6,24 @@
 namespace i2b {
 namespace {
 
-// Closest point within the plane(s) of the domain sides that the node lies in, by alternating projections.
+// Of h: nearer to the geometry the way to it says little. At an edge of a sheet it would hold the node to that edge,
+// where the triangle lets it glide away.
+constexpr double settled = 0.1;
+
+// Closest point within the plane(s) of the domain sides that the node lies in: again and again to where the plane through
+// the closest point, across the way to it, meets the side.
 ClosestPoint closestWithinSides(const SurfaceIndex& index, const Vec3& q, std::uint8_t outside, double radius) {
     ClosestPoint c = index.closest(q, radius);
     if (!c) c = index.closest(q);
     if (outside == 0 || !c) return c;
     Vec3 p = q;
-    for (int i = 0; i < 8; ++i) {
-        p += withinSides(c.point - p, outside);
-        const ClosestPoint next = index.closest(p);
-        const bool done = norm2(next.point - c.point) < 1e-20 * norm2(q - c.point);
-        c = next;
-        if (done) break;
+    const double enough = 1e-9 * norm(q - c.point);
+    for (int i = 0; i < 12 && norm(p - c.point) > enough; ++i) {
+        const Vec3 way = c.point - p, within = withinSides(way, outside);
+        const double s = norm2(within) / norm2(way);
+        p += s > 0.03 ? within / s : within; // a wall along the side is not chased
+        c = index.closest(p);
     }
-    p += withinSides(c.point - p, outside);
     c.point = p;
     return c;
 }
@@ -137,7 +141,7 @@ WallTarget wallTarget(const SurfaceIndex& index, const Band& band, std::size_t w
     target.point = c.point;
     const Vec3 away = b - c.point;
     const double d = norm(away);
-    target.normal = d > 1e-6 * h ? away / d : index.normal(c.triangle);
+    target.normal = d > settled * h ? away / d : index.normal(c.triangle);
     if (target.normal == Vec3{}) target.normal = normalized(f - b);
     target.normal = normalized(withinSides(target.normal, outside));
     return target;

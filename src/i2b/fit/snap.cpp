@@ -30,7 +30,7 @@ void snapExactly(const Band& band, const SurfaceIndex& index, const FeatureIndex
                 if (!target.found) return;
                 to = target.point;
             } else {
-                to = snapTarget(features, snaps[b], old, band.h[b]);
+                to = snapLine(index, features, snaps[b], old, band.h[b]).point;
             }
             const Vec3 way = withinSides(to - old, band.outside[b]);
             if (norm(way) < 1e-12 * band.h[b]) return;

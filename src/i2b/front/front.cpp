@@ -123,6 +123,7 @@ Front buildFront(const LatticeMesh& mesh, double thickness) {
         }
     }
     front.part.assign(front.ownerCell.size(), 0);
+    front.corePoints = static_cast<std::int32_t>(mesh.pointCount());
     front.pieces.assign(front.ownerCell.size(), 1);
     return front;
 }
@@ -171,6 +172,7 @@ std::uint64_t Front::checksum() const {
     sum.add(std::span<const Vec3>(front));
     sum.add(std::span<const std::int32_t>(ownerCell));
     sum.add(std::span<const std::int32_t>(part));
+    for (const Inserted& i : inserted) sum.bytes(&i, sizeof i);
     sum.add(std::span<const std::int32_t>(movedPoints));
     sum.add(std::span<const Vec3>(movedTo));
     for (auto v : mesh.vertices()) {

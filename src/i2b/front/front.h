@@ -32,10 +32,19 @@ struct Front {
     std::vector<std::int32_t> part;                // of the geometry behind it
     std::vector<std::uint8_t> level;               // lattice level: its size
     std::vector<std::uint8_t> pieces;              // of a lattice face that was split: 2 at the first, 0 at the second; else 1
+    // Vertices that the fit has put into edges: the last ones of all. Their core points have the numbers after the
+    // LatticeMesh's, and lie on the straight edge between the front positions of the two ends.
+    struct Inserted {
+        std::array<std::int32_t, 2> ends{};        // vertices
+        double t = 0;                              // share of the way from the first to the second
+    };
+    std::vector<Inserted> inserted;
+    std::int32_t corePoints = 0;                   // of the LatticeMesh
     // Core points behind the front that the fit has moved, by number.
     std::vector<std::int32_t> movedPoints;
     std::vector<Vec3> movedTo;                     // m
 
+    std::size_t firstInserted() const { return front.size() - inserted.size(); } // vertex
     // "" or the first fault: open edges away from the domain's sides, isolated vertices, sizes of arrays.
     std::string validate() const;
     std::uint64_t checksum() const;

@@ -34,18 +34,21 @@ struct Path {
 class Nodes {
   public:
     Nodes(const Front& front, const LatticeMesh& lattice, const LayerStack& layers, double thickness)
-        : front_(front), layers_(layers), core_(static_cast<std::size_t>(lattice.pointCount())) {
+        : front_(front), layers_(layers), core_(static_cast<std::size_t>(front.corePoints) + front.inserted.size()) {
         const std::vector<Vec3> start = lattice.latticePoints();
         const auto startOf = [&](std::int32_t point) { return start[static_cast<std::size_t>(point)]; };
         const std::size_t fans = front.front.size();
         behind_.reserve(front.movedPoints.size()), ahead_.reserve(fans), wall_.reserve(fans);
         for (std::size_t i = 0; i < front.movedPoints.size(); ++i) behind_.push_back({startOf(front.movedPoints[i]), front.movedTo[i]});
-        for (std::size_t v = 0; v < fans; ++v) {
+        for (std::size_t v = 0; v < front.firstInserted(); ++v) {
             const std::array<std::int8_t, 3>& d = front.direction[v];
             const Vec3 f = startOf(front.corePoint[v]);
-            const auto& p = front.mesh.point(FrontMesh::VertexHandle(static_cast<int>(v)));
             ahead_.push_back({f, front.front[v]});
-            wall_.push_back({f + Vec3{double(d[0]), double(d[1]), double(d[2])} * (thickness * front.h[v]), {p[0], p[1], p[2]}});
+            wall_.push_back({f + Vec3{double(d[0]), double(d[1]), double(d[2])} * (thickness * front.h[v]), wallOf(v)});
+        }
+        for (const Front::Inserted& i : front.inserted) { // on an edge, of the front and of the wall, at the start
+            const auto p = static_cast<std::size_t>(i.ends[0]), q = static_cast<std::size_t>(i.ends[1]);
+            wall_.push_back({wall_[p].start + (wall_[q].start - wall_[p].start) * i.t, wallOf(wall_.size())});
         }
         beta.assign(core_ + fans, 1.0f);
         touched_.assign(beta.size(), 0);
@@ -71,31 +74,50 @@ class Nodes {
     std::vector<float> beta; // per node; to be changed by set()
 
   private:
+    Vec3 wallOf(std::size_t v) const {
+        const auto& p = front_.mesh.point(FrontMesh::VertexHandle(static_cast<int>(v)));
+        return {p[0], p[1], p[2]};
+    }
+    // The front position of a fan now: inserted ones stay on the edge that they divide.
+    Vec3 frontNow(std::size_t v) const {
+        if (v < ahead_.size()) return ahead_[v].at(beta[static_cast<std::size_t>(front_.corePoint[v])]);
+        const Front::Inserted& i = front_.inserted[v - ahead_.size()];
+        const Vec3 a = frontNow(static_cast<std::size_t>(i.ends[0]));
+        return a + (frontNow(static_cast<std::size_t>(i.ends[1])) - a) * i.t;
+    }
+    bool frontTouched(std::size_t v) const {
+        if (v < ahead_.size()) return touched_[static_cast<std::size_t>(front_.corePoint[v])] != 0;
+        const Front::Inserted& i = front_.inserted[v - ahead_.size()];
+        return frontTouched(static_cast<std::size_t>(i.ends[0])) || frontTouched(static_cast<std::size_t>(i.ends[1]));
+    }
+
     const Front& front_;
     const LayerStack& layers_;
     std::size_t core_;
     std::vector<Path> behind_;             // as front.movedPoints
-    std::vector<Path> ahead_, wall_; // per fan
+    std::vector<Path> ahead_;              // per fan that the lattice has
+    std::vector<Path> wall_;               // per fan
     std::vector<std::uint8_t> touched_;    // per node
 };
 
 std::vector<std::int32_t> Nodes::place(std::vector<Vec3>& points) {
     std::vector<std::int32_t> moved;
-    const auto put = [&](std::size_t p, const Path& path) {
-        points[p] = path.at(beta[p]);
+    const auto put = [&](std::size_t p, const Vec3& to) {
+        points[p] = to;
         moved.push_back(static_cast<std::int32_t>(p));
     };
     for (std::size_t i = 0; i < behind_.size(); ++i) {
         const auto p = static_cast<std::size_t>(front_.movedPoints[i]);
-        if (touched_[p]) put(p, behind_[i]);
+        if (touched_[p]) put(p, behind_[i].at(beta[p]));
     }
     const auto n = static_cast<std::size_t>(layers_.count);
     for (std::size_t v = 0; v < wall_.size(); ++v) {
         const auto p = static_cast<std::size_t>(front_.corePoint[v]);
-        if (touched_[p]) put(p, ahead_[v]);
-        if (!touched_[p] && !touched_[core_ + v]) continue;
+        const bool frontMoves = frontTouched(v);
+        if (frontMoves) put(p, frontNow(v));
+        if (!frontMoves && !touched_[core_ + v]) continue;
         const std::size_t first = core_ + v * n;
-        placeLayers(layers_, v, ahead_[v].at(beta[p]), wall_[v].at(beta[core_ + v]), &points[first]);
+        placeLayers(layers_, v, frontNow(v), wall_[v].at(beta[core_ + v]), &points[first]);
         for (std::size_t k = 0; k < n; ++k) moved.push_back(static_cast<std::int32_t>(first + k));
     }
     std::fill(touched_.begin(), touched_.end(), std::uint8_t(0));
@@ -106,7 +128,7 @@ void Nodes::store(Front& front) const {
     for (std::size_t i = 0; i < behind_.size(); ++i) front.movedTo[i] = behind_[i].at(beta[static_cast<std::size_t>(front.movedPoints[i])]);
     for (std::size_t v = 0; v < wall_.size(); ++v) {
         const Vec3 b = wall_[v].at(beta[core_ + v]);
-        front.front[v] = ahead_[v].at(beta[static_cast<std::size_t>(front.corePoint[v])]);
+        front.front[v] = frontNow(v);
         front.mesh.set_point(FrontMesh::VertexHandle(static_cast<int>(v)), {b.x, b.y, b.z});
     }
 }

@@ -1,0 +1,115 @@
+#include "i2b/fit/between.h"
+#include "i2b/fit/fit.h"
+#include <algorithm>
+
+namespace i2b {
+namespace {
+
+constexpr double degree = 3.14159265358979323846 / 180;
+const double smallestTurn = std::cos(25 * degree);
+const double confirmedTurn = std::cos(35 * degree);
+constexpr double besideLine = 0.25; // of h: steps off a line along the planes that meet in it
+constexpr double roundedOff = 0.25; // of h: so far from the geometry two planes may meet where an edge is rounded
+
+// The line in which the tangent planes of two feet meet, looked at again on the geometry three times.
+FeatureIndex::Line implicitLine(const SurfaceIndex& index, Foot a, Foot b, const Vec3& fluid, double h) {
+    FeatureIndex::Line line;
+    Vec3 middle = (a.point + b.point) * 0.5;
+    for (int round = 0; round < 3; ++round) {
+        const Vec3 t = cross(a.normal, b.normal);
+        const double s = norm2(t);
+        if (s < 0.15) return line; // planes within 23 degrees
+        // Nearest point to the middle on both planes: middle + u na + v nb.
+        const double c = dot(a.normal, b.normal), da = dot(a.normal, a.point - middle), db = dot(b.normal, b.point - middle);
+        const Vec3 p = middle + a.normal * ((da - c * db) / s) + b.normal * ((db - c * da) / s);
+        if (norm(p - (a.point + b.point) * 0.5) > 1.5 * h) return line;
+        line.point = p;
+        line.tangent = t / std::sqrt(s);
+        // Step off the line along each plane, to the side of its own foot.
+        const auto along = [&](const Foot& foot) {
+            const Vec3 d = foot.point - p;
+            const Vec3 inPlane = d - line.tangent * dot(d, line.tangent) - foot.normal * dot(d, foot.normal);
+            return normalized(inPlane) * (besideLine * h);
+        };
+        const Foot na = footAt(index, p + along(a), fluid, h), nb = footAt(index, p + along(b), fluid, h);
+        if (!na.found || !nb.found) return line;
+        a = na, b = nb, middle = p;
+    }
+    const ClosestPoint on = index.closest(line.point, roundedOff * h);
+    if (on) line.point = on.point; // of a rounded edge the middle
+    line.found = on && dot(a.normal, b.normal) < confirmedTurn;
+    return line;
+}
+
+// Where the nearest part changes on the way from a foot of one part to a place of another; none if it does not.
+bool partChange(const SurfaceIndex& index, const Foot& from, Vec3 to, Vec3& place) {
+    const auto isOwn = [&](const Vec3& p) {
+        const ClosestPoint c = index.closest(p);
+        return c && static_cast<std::uint32_t>(index.surface().partOf[c.triangle]) == from.part;
+    };
+    if (isOwn(to)) return false;
+    Vec3 own = from.point;
+    for (int i = 0; i < 7; ++i) {
+        const Vec3 middle = (own + to) * 0.5;
+        (isOwn(middle) ? own : to) = middle;
+    }
+    place = index.closest((own + to) * 0.5).point;
+    return true;
+}
+
+} // namespace
+
+Foot footAt(const SurfaceIndex& index, const Vec3& q, const Vec3& fluid, double radius) {
+    Foot foot;
+    const ClosestPoint c = index.closest(q, radius);
+    if (!c) return foot;
+    foot.point = c.point;
+    foot.normal = index.normal(c.triangle);
+    foot.part = static_cast<std::uint32_t>(index.surface().partOf[c.triangle]);
+    if (dot(foot.normal, fluid - c.point) < 0) foot.normal = -foot.normal;
+    foot.found = foot.normal != Vec3{};
+    return foot;
+}
+
+Foot footOf(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, std::size_t b) {
+    const Vec3 f = seenFront(index, band, b, x[static_cast<std::size_t>(band.frontNode[b])]);
+    const Vec3 way = f - x[b];
+    const double length = norm(way);
+    const Vec3 q = length > 0 ? x[b] + way * std::min(1.0, 0.1 * band.h[b] / length) : x[b];
+    return footAt(index, q, f, 2 * band.reach[b]);
+}
+
+bool turns(const Foot& a, const Foot& b) {
+    const double c = dot(a.normal, b.normal);
+    return a.found && b.found && c < smallestTurn;
+}
+
+Between lineBetween(const SurfaceIndex& index, const FeatureIndex& features, const Foot& a, const Foot& b, const Vec3& fluid, double h) {
+    const FeatureIndex::Line line = features.closestLine((a.point + b.point) * 0.5, 0.8 * norm(a.point - b.point));
+    if (line.found) return {line, SnapKind::line};
+    return {implicitLine(index, a, b, fluid, h), SnapKind::implicitLine};
+}
+
+Between borderBetween(const SurfaceIndex& index, const Foot& a, const Foot& b, double h) {
+    const auto isNear = [&](const Foot& foot, std::uint32_t part) {
+        return bool(index.closest(foot.point, 0.05 * h, [&](std::uint32_t t) { return static_cast<std::uint32_t>(index.surface().partOf[t]) == part; }));
+    };
+    Between border;
+    if (isNear(a, b.part) || isNear(b, a.part) || !partChange(index, a, b.point, border.line.point)) return border;
+    // The border's direction from a second place on it, a little to the side.
+    const Vec3 across = normalized(cross(a.normal, b.point - a.point)) * (0.25 * h);
+    Foot beside = a;
+    beside.point += across;
+    Vec3 second;
+    border.line.tangent = normalized(across);
+    if (partChange(index, beside, b.point + across, second) && norm(second - border.line.point) < h) border.line.tangent = normalized(second - border.line.point);
+    border.line.found = border.line.tangent != Vec3{};
+    border.kind = SnapKind::implicitLine;
+    return border;
+}
+
+bool hasOtherPartNear(const SurfaceIndex& index, const Foot& foot, double distance) {
+    return bool(index.closest(foot.point, distance, [&](std::uint32_t t) { return static_cast<std::uint32_t>(index.surface().partOf[t]) != foot.part; }));
+}
+
+} // namespace i2b

@@ -1,0 +1,38 @@
+// What lies between two places on the wall: the line in which they meet, be it a sharp edge of the soup, the line in
+// which two parts cut each other, or the border between parts that lie flush.
+#pragma once
+#include "i2b/fit/features.h"
+
+namespace i2b {
+
+// What a wall node sees: its place on the geometry and the unit normal there, towards the fluid.
+struct Foot {
+    Vec3 point, normal;
+    std::uint32_t part = 0; // of the geometry
+    bool found = false;
+};
+
+// The nearest place on the geometry within radius (m) of q, seen from a place in the fluid.
+Foot footAt(const SurfaceIndex& index, const Vec3& q, const Vec3& fluid, double radius);
+// Of wall node b.
+Foot footOf(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, std::size_t b);
+
+// Their normals differ by more than 25 degrees.
+bool turns(const Foot& a, const Foot& b);
+
+struct Between {
+    FeatureIndex::Line line;
+    SnapKind kind = SnapKind::none;
+};
+
+// The feature between two feet that turn: a sharp edge of the soup, or else the line in which their tangent planes
+// meet, if the geometry confirms it. h: m, size of the cells around; fluid: a place in the fluid near by.
+Between lineBetween(const SurfaceIndex& index, const FeatureIndex& features, const Foot& a, const Foot& b, const Vec3& fluid, double h);
+
+// The border between two parts that lie flush; none where they lie upon each other.
+Between borderBetween(const SurfaceIndex& index, const Foot& a, const Foot& b, double h);
+
+// Whether another part than the foot's own comes as near as this to it.
+bool hasOtherPartNear(const SurfaceIndex& index, const Foot& foot, double distance);
+
+} // namespace i2b
