@@ -109,10 +109,30 @@ struct FitOptions {
     bool passages = true;                // keep cut cells whose centre has room too: nearer to walls, into passages
 };
 
+enum class LayerUnit : std::uint8_t { metre, cell };
+
+// Layers on the walls of a part. What is 0 is as for all walls; of these the growth stays before the thickness, and the
+// first height before both, where they would be more than two.
+struct PartLayers {
+    std::string part;                    // name or regular expression (whole name); the last one that fits counts
+    int count = 1;                       // 0: none, one cell between front and wall stays
+    double first = 0, thickness = 0;     // in LayerOptions::unit
+    double growth = 0;
+};
+
+// Of first height, thickness and growth two give the third. With neither height the layers fill the room between the
+// Cartesian cells and the wall.
 struct LayerOptions {
-    int count = 1;                       // prism layers on every wall face
-    double first = 0;                    // m, height of the one at the wall; 0: from the room and the growth
-    double growth = 1.2;                 // ratio of heights, outwards
+    int count = 1;                       // prism layers on every wall face; 0: none, one cell stays
+    double first = 0;                    // height of the one at the wall, in unit; 0: not given
+    double growth = 0;                   // ratio of heights, outwards; 0: from the two heights, else 1.2
+    double thickness = 0;                // of all layers together, in unit; 0: not given
+    LayerUnit unit = LayerUnit::metre;   // cell: shares of the size of the Cartesian cells at the place
+    double yPlus = 0;                    // gives first, with the three below; 0: not given
+    double velocity = 0;                 // m/s, of the flow
+    double viscosity = 0;                // m^2/s, kinematic
+    double length = 0;                   // m, along the flow, of the body
+    std::vector<PartLayers> parts{};
 };
 
 struct OutputOptions {

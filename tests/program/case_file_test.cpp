@@ -40,7 +40,7 @@ Case everything() {
     o.domain.flow = Flow::internal;
     o.domain.seeds = {{"jacket", {0.1, -0.2, 0.3}}, {"", {1, 2, 3}}};
     o.fit = {0.2, 7};
-    o.layers = {3, 1e-4, 1.35};
+    o.layers = {3, 1e-4, 1.35, 0.01, LayerUnit::cell, 30, 40, 1.5e-5, 4.6, {{"wheel{1,2}", 2, 1e-3, 0, 1.25}, {"body", 0, 0, 0, 0}}};
     o.output = {"out/car", {"vtu"}, true};
     o.threads = 3;
     c.quiet = true;

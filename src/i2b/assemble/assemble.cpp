@@ -1,8 +1,11 @@
 #include "i2b/assemble/assemble.h"
+#include "i2b/assemble/divided_edges.h"
 #include "i2b/core/error.h"
 #include <algorithm>
+#include <bit>
 #include <fmt/format.h>
 #include <numeric>
+#include <span>
 #include <utility>
 
 namespace i2b {
@@ -20,11 +23,11 @@ struct Cursor {
     Counts at;
     PolyMesh* mesh = nullptr;
 
-    void add(std::size_t kind, std::int32_t owner, std::int32_t neighbour, const std::int32_t* points, int n) {
+    void add(std::size_t kind, std::int32_t owner, std::int32_t neighbour, std::span<const std::int32_t> points) {
         const auto f = static_cast<std::size_t>(at.faces[kind]++);
         auto& v = at.vertices[kind];
-        std::copy_n(points, n, mesh->faceVertices.begin() + v);
-        v += n;
+        std::copy(points.begin(), points.end(), mesh->faceVertices.begin() + v);
+        v += static_cast<std::int64_t>(points.size());
         mesh->faceOffsets[f + 1] = static_cast<std::uint32_t>(v);
         mesh->owner[f] = owner;
         if (kind == 0) mesh->neighbour[f] = neighbour;
@@ -35,73 +38,52 @@ struct Pending { // an internal face waiting to be put in order of its neighbour
     std::int32_t neighbour = 0;
     std::uint8_t n = 0;
     std::array<std::int32_t, 16> points{};
-
-    Pending() = default;
-    Pending(std::int32_t across, std::size_t count, const std::array<std::int32_t, 8>& vertices) : neighbour(across), n(static_cast<std::uint8_t>(count)) {
-        std::copy(vertices.begin(), vertices.end(), points.begin());
-    }
+    std::span<const std::int32_t> span() const { return {points.data(), n}; }
 };
 
-// Core edges along the front into which the fit has put a vertex.
-class DividedEdges {
-  public:
-    explicit DividedEdges(const Front& front) {
-        if (front.inserted.empty()) return;
-        isEnd_.assign(static_cast<std::size_t>(front.corePoints), false);
-        for (std::size_t i = 0; i < front.inserted.size(); ++i) {
-            const auto [v, w] = front.inserted[i].ends;
-            const auto [a, b] = std::minmax(front.corePoint[std::size_t(v)], front.corePoint[std::size_t(w)]);
-            edges_.push_back({a, b, front.corePoint[front.firstInserted() + i]});
-            isEnd_[std::size_t(a)] = isEnd_[std::size_t(b)] = true;
-        }
-        std::sort(edges_.begin(), edges_.end());
-    }
-    // Every polygon along such an edge has its vertex too.
-    void addTo(Pending& p) const {
-        if (edges_.empty()) return;
-        Pending out = p;
-        out.n = 0;
-        for (std::size_t i = 0; i < p.n; ++i) {
-            out.points[out.n++] = p.points[i];
-            const auto [a, b] = std::minmax(p.points[i], p.points[(i + 1) % p.n]);
-            if (!isEnd_[std::size_t(a)] || !isEnd_[std::size_t(b)]) continue;
-            const auto e = std::lower_bound(edges_.begin(), edges_.end(), Edge{a, b, 0});
-            if (e != edges_.end() && e->a == a && e->b == b) out.points[out.n++] = e->point;
-        }
-        p = out;
-    }
-
-  private:
-    struct Edge {
-        std::int32_t a, b, point;
-        friend auto operator<=>(const Edge&, const Edge&) = default;
-    };
-    std::vector<Edge> edges_; // a < b: its ends; sorted
-    std::vector<bool> isEnd_; // per core point
+// Of a prism: the edge of the front from u to w and the front face beyond it, or -1.
+struct PrismSide { int other, u, w; };
+// A piece of a side between two cells of layers: cells between it and the wall in the higher of the two stacks.
+struct SidePiece {
+    std::int32_t neighbour = 0;
+    const PrismSide* side = nullptr;
+    int below = 0;
+};
+// What prismFaces() works with, kept from face to face for its memory.
+struct Scratch {
+    std::vector<PrismSide> sides;
+    std::vector<SidePiece> pieces;
+    std::vector<std::int32_t> points;
 };
 
 class Assembler {
   public:
     explicit Assembler(const AssembleInput& in)
-        : in_(in), layers_(in.layers.count), coreCells_(static_cast<std::int32_t>(in.lattice.cellCount())),
+        : in_(in), coreCells_(static_cast<std::int32_t>(in.lattice.cellCount())),
           corePoints_(in.front.corePoints + static_cast<std::int32_t>(in.front.inserted.size())),
           frontFaces_(in.front.ownerCell.size()), divided_(in.front) {}
 
     PolyMesh run();
 
   private:
+    // k = 0: next to the front; the last one: at the wall.
     std::int32_t layerCell(std::size_t face, int k) const {
-        return coreCells_ + static_cast<std::int32_t>(face) * layers_ + k;
+        return coreCells_ + static_cast<std::int32_t>(in_.layers.cellOffset(face)) + k;
     }
-    // k = 0: the front; k = layers: the wall.
-    std::int32_t layerPoint(int vertex, int k) const {
-        return k == 0 ? in_.front.corePoint[static_cast<std::size_t>(vertex)] : corePoints_ + vertex * layers_ + k - 1;
+    std::int32_t wallCell(std::size_t face) const { return layerCell(face, in_.layers.cellsOf(face) - 1); }
+    // level: cells between the point and the wall; 0: on the wall; pointsOf(vertex): on the front.
+    std::int32_t layerPoint(int vertex, int level) const {
+        const auto v = static_cast<std::size_t>(vertex);
+        const int points = in_.layers.pointsOf(v);
+        return level == points ? in_.front.corePoint[v] : corePoints_ + static_cast<std::int32_t>(in_.layers.pointOffset(v)) + points - 1 - level;
     }
     template <class Emit>
     void coreFaces(int level, std::size_t node, LatticeMesh::Reader& reader, const Emit& emit) const;
     template <class Emit>
-    void prismFaces(std::size_t face, const Emit& emit) const;
-    void polygon(std::size_t face, int k, Pending& p) const;
+    void prismFaces(std::size_t face, Scratch& scratch, const Emit& emit) const;
+    void addPieces(std::size_t face, int k, const PrismSide& side, std::vector<SidePiece>& out) const;
+    void sidePolygon(const SidePiece& piece, int cells, std::vector<std::int32_t>& out) const;
+    void polygon(std::size_t face, int level, Pending& p) const;
     int sideOf(int u, int w) const;
     void layOut(PolyMesh& mesh);
     void fill(PolyMesh& mesh);
@@ -118,16 +100,19 @@ class Assembler {
     void chunkFaces(const Chunk& chunk, const Emit& emit) const;
 
     const AssembleInput& in_;
-    std::int32_t layers_, coreCells_, corePoints_;
+    std::int32_t coreCells_, corePoints_;
     std::size_t frontFaces_;
     DividedEdges divided_;
     std::vector<Chunk> chunks_;
     std::int64_t sideFaces_ = 0, sideVertices_ = 0; // faces before the walls
 };
 
-void Assembler::polygon(std::size_t face, int k, Pending& p) const {
+// level -1: the front.
+void Assembler::polygon(std::size_t face, int level, Pending& p) const {
     p.n = 0;
-    for (auto v : in_.front.mesh.fv_range(FrontMesh::FaceHandle(static_cast<int>(face)))) p.points[p.n++] = layerPoint(v.idx(), k);
+    for (auto v : in_.front.mesh.fv_range(FrontMesh::FaceHandle(static_cast<int>(face)))) {
+        p.points[p.n++] = level < 0 ? in_.front.corePoint[static_cast<std::size_t>(v.idx())] : layerPoint(v.idx(), level);
+    }
 }
 
 int Assembler::sideOf(int u, int w) const {
@@ -135,7 +120,7 @@ int Assembler::sideOf(int u, int w) const {
     return std::countr_zero(static_cast<unsigned>(common));
 }
 
-// emit(kind, owner, pending) for every face that a node's cells own.
+// emit(kind, owner, neighbour, points) for every face that a node's cells own.
 template <class Emit>
 void Assembler::coreFaces(int level, std::size_t node, LatticeMesh::Reader& reader, const Emit& emit) const {
     const RankedMask& cells = in_.lattice.cells(level);
@@ -147,9 +132,11 @@ void Assembler::coreFaces(int level, std::size_t node, LatticeMesh::Reader& read
     bits::forEach(leafBits(&cells.leaf(node)), [&](int x, int y, int z) {
         pending.clear();
         reader.faces(level, {o[0] + x, o[1] + y, o[2] + z}, [&](const CellFace& face) {
-            Pending p(0, face.vertices, face.points);
-            if (face.kind != FaceKind::front) divided_.addTo(p);
-            if (face.kind == FaceKind::side) return emit(std::size_t(1) + face.side, rank, p);
+            Pending p;
+            p.n = face.vertices;
+            std::copy_n(face.points.begin(), p.n, p.points.begin());
+            if (face.kind != FaceKind::front) p.n = static_cast<std::uint8_t>(divided_.addTo(p.points, p.n));
+            if (face.kind == FaceKind::side) return emit(std::size_t(1) + face.side, rank, 0, p.span());
             if (face.kind == FaceKind::internal) {
                 if (face.other < rank) return;
                 p.neighbour = static_cast<std::int32_t>(face.other);
@@ -157,44 +144,71 @@ void Assembler::coreFaces(int level, std::size_t node, LatticeMesh::Reader& read
                 return;
             }
             for (int i = in_.front.pieces[next]; i > 0; --i, ++next) { // the fit may have split it in two
-                polygon(next, 0, p);
+                polygon(next, -1, p);
                 p.neighbour = layerCell(next, 0);
                 pending.push_back(p);
             }
         });
         std::sort(pending.begin(), pending.end(), [](const Pending& a, const Pending& b) { return a.neighbour < b.neighbour; });
-        for (const Pending& p : pending) emit(std::size_t(0), rank, p);
+        for (const Pending& p : pending) emit(std::size_t(0), rank, p.neighbour, p.span());
         ++rank;
     });
 }
 
+// The pieces of a side of the k-th cell of a face: the innermost cell lies beside all cells of the other stack from its own
+// height on.
+void Assembler::addPieces(std::size_t face, int k, const PrismSide& side, std::vector<SidePiece>& out) const {
+    const auto other = static_cast<std::size_t>(side.other);
+    const int mine = in_.layers.cellsOf(face), others = side.other < 0 ? mine : in_.layers.cellsOf(other);
+    const int below = mine - 1 - k, last = k == 0 ? std::max(mine, others) - 1 : below;
+    for (int b = last; b >= below; --b) {
+        const std::int32_t neighbour = side.other < 0 ? 0 : layerCell(other, others - 1 - std::min(b, others - 1));
+        out.push_back({neighbour, &side, b});
+    }
+}
+
+// Along the front or the layer above, down at w, along the layer below, up at u; with all points that the stacks around
+// have there. cells: of the higher stack beside the piece.
+void Assembler::sidePolygon(const SidePiece& piece, int cells, std::vector<std::int32_t>& out) const {
+    const auto [other, u, w] = *piece.side;
+    const auto topOf = [&](int v) {
+        return piece.below + 1 < cells ? piece.below + 1 : in_.layers.pointsOf(static_cast<std::size_t>(v));
+    };
+    const int topU = topOf(u), topW = topOf(w);
+    out.clear();
+    out.push_back(layerPoint(u, topU));
+    for (int level = topW; level >= piece.below; --level) out.push_back(layerPoint(w, level));
+    for (int level = piece.below; level < topU; ++level) out.push_back(layerPoint(u, level));
+}
+
 template <class Emit>
-void Assembler::prismFaces(std::size_t face, const Emit& emit) const {
-    struct Side { int other, u, w; };
-    std::vector<Side> sides;
+void Assembler::prismFaces(std::size_t face, Scratch& scratch, const Emit& emit) const {
+    auto& [sides, pieces, points] = scratch;
+    sides.clear();
     const FrontMesh& mesh = in_.front.mesh;
     for (auto he : mesh.fh_range(FrontMesh::FaceHandle(static_cast<int>(face)))) {
         const auto other = mesh.opposite_face_handle(he);
         sides.push_back({other.is_valid() ? other.idx() : -1, mesh.from_vertex_handle(he).idx(), mesh.to_vertex_handle(he).idx()});
     }
-    std::stable_sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.other < b.other; });
-    for (int k = 0; k < layers_; ++k) {
-        Pending p;
-        if (k + 1 < layers_) {
-            polygon(face, k + 1, p);
-            p.neighbour = layerCell(face, k + 1);
-            emit(std::size_t(0), layerCell(face, k), p);
+    std::stable_sort(sides.begin(), sides.end(), [](const PrismSide& a, const PrismSide& b) { return a.other < b.other; });
+    const auto lower = [](const SidePiece& a, const SidePiece& b) { return a.neighbour < b.neighbour; };
+    const int cells = in_.layers.cellsOf(face);
+    for (int k = 0; k < cells; ++k) {
+        const std::int32_t owner = layerCell(face, k);
+        if (k + 1 < cells) {
+            Pending p;
+            polygon(face, cells - 1 - k, p);
+            emit(std::size_t(0), owner, owner + 1, p.span());
         }
-        for (const Side& s : sides) {
-            if (s.other >= 0 && s.other < static_cast<int>(face)) continue;
-            p.n = 4;
-            p.points = {layerPoint(s.u, k), layerPoint(s.w, k), layerPoint(s.w, k + 1), layerPoint(s.u, k + 1)};
-            if (s.other < 0) {
-                emit(static_cast<std::size_t>(1 + sideOf(s.u, s.w)), layerCell(face, k), p);
-            } else {
-                p.neighbour = layerCell(static_cast<std::size_t>(s.other), k);
-                emit(std::size_t(0), layerCell(face, k), p);
-            }
+        pieces.clear();
+        for (const PrismSide& s : sides) {
+            if (s.other < 0 || s.other > static_cast<int>(face)) addPieces(face, k, s, pieces);
+        }
+        if (!std::is_sorted(pieces.begin(), pieces.end(), lower)) std::stable_sort(pieces.begin(), pieces.end(), lower);
+        for (const SidePiece& piece : pieces) {
+            const PrismSide& s = *piece.side;
+            sidePolygon(piece, s.other < 0 ? cells : std::max(cells, in_.layers.cellsOf(static_cast<std::size_t>(s.other))), points);
+            emit(s.other < 0 ? static_cast<std::size_t>(1 + sideOf(s.u, s.w)) : std::size_t(0), owner, piece.neighbour, std::span<const std::int32_t>(points));
         }
     }
 }
@@ -202,7 +216,8 @@ void Assembler::prismFaces(std::size_t face, const Emit& emit) const {
 template <class Emit>
 void Assembler::chunkFaces(const Chunk& chunk, const Emit& emit) const {
     if (chunk.level < 0) {
-        for (std::size_t f = chunk.begin; f < chunk.end; ++f) prismFaces(f, emit);
+        Scratch scratch;
+        for (std::size_t f = chunk.begin; f < chunk.end; ++f) prismFaces(f, scratch, emit);
         return;
     }
     LatticeMesh::Reader reader(in_.lattice);
@@ -217,9 +232,9 @@ void Assembler::layOut(PolyMesh& mesh) {
     for (std::size_t b = 0; b < frontFaces_; b += 2048) chunks_.push_back({-1, b, std::min(frontFaces_, b + 2048), {}});
     parallelFor(chunks_.size(), [&](std::size_t c) {
         Counts& counts = chunks_[c].counts;
-        chunkFaces(chunks_[c], [&](std::size_t kind, std::int32_t, const Pending& p) {
+        chunkFaces(chunks_[c], [&](std::size_t kind, std::int32_t, std::int32_t, std::span<const std::int32_t> points) {
             ++counts.faces[kind];
-            counts.vertices[kind] += p.n;
+            counts.vertices[kind] += static_cast<std::int64_t>(points.size());
         });
     }, 1);
     std::int64_t faces = 0, vertices = 0;
@@ -255,8 +270,8 @@ void Assembler::fill(PolyMesh& mesh) {
         chunks_.size(),
         [&](std::size_t c) {
             Cursor cursor{chunks_[c].counts, &mesh};
-            chunkFaces(chunks_[c], [&](std::size_t kind, std::int32_t owner, const Pending& p) {
-                cursor.add(kind, owner, p.neighbour, p.points.data(), p.n);
+            chunkFaces(chunks_[c], [&](std::size_t kind, std::int32_t owner, std::int32_t neighbour, std::span<const std::int32_t> points) {
+                cursor.add(kind, owner, neighbour, points);
             });
         },
         1);
@@ -276,11 +291,11 @@ void Assembler::wallPatches(PolyMesh& mesh) {
         }
         ++mesh.patches.back().count;
         Pending p;
-        polygon(static_cast<std::size_t>(order[i]), layers_, p);
+        polygon(static_cast<std::size_t>(order[i]), 0, p);
         std::copy_n(p.points.begin(), p.n, mesh.faceVertices.begin() + v);
         v += p.n;
         mesh.faceOffsets[static_cast<std::size_t>(f) + 1] = static_cast<std::uint32_t>(v);
-        mesh.owner[static_cast<std::size_t>(f++)] = layerCell(static_cast<std::size_t>(order[i]), layers_ - 1);
+        mesh.owner[static_cast<std::size_t>(f++)] = wallCell(static_cast<std::size_t>(order[i]));
     }
 }
 
@@ -312,10 +327,10 @@ void Assembler::cellData(PolyMesh& mesh) const {
     }
     parallelFor(frontFaces_, [&](std::size_t f) {
         const auto owner = static_cast<std::size_t>(in_.front.ownerCell[f]);
-        for (int k = 0; k < layers_; ++k) {
+        for (int k = 0, cells = in_.layers.cellsOf(f); k < cells; ++k) {
             const auto c = static_cast<std::size_t>(layerCell(f, k));
             mesh.cellLevel[c] = in_.front.level[f];
-            mesh.cellLayer[c] = static_cast<std::uint8_t>(std::min(255, layers_ - k));
+            mesh.cellLayer[c] = static_cast<std::uint8_t>(cells - k);
             if (zoned) mesh.cellRegion[c] = mesh.cellRegion[owner];
         }
     });
@@ -328,8 +343,8 @@ void Assembler::cellData(PolyMesh& mesh) const {
 std::vector<Vec3> Assembler::placePoints() const {
     const Front& front = in_.front;
     std::vector<Vec3> points = in_.lattice.latticePoints();
-    const auto core = static_cast<std::size_t>(corePoints_), n = static_cast<std::size_t>(layers_);
-    points.resize(core + front.front.size() * n);
+    const auto core = static_cast<std::size_t>(corePoints_);
+    points.resize(core + in_.layers.points());
     parallelFor(front.movedPoints.size(), [&](std::size_t i) {
         points[static_cast<std::size_t>(front.movedPoints[i])] = front.movedTo[i];
     });
@@ -338,14 +353,14 @@ std::vector<Vec3> Assembler::placePoints() const {
     }
     parallelFor(front.front.size(), [&](std::size_t v) {
         const auto& p = front.mesh.point(FrontMesh::VertexHandle(static_cast<int>(v)));
-        placeLayers(in_.layers, v, front.front[v], {p[0], p[1], p[2]}, &points[core + v * n]);
+        placeLayers(in_.layers, v, front.front[v], {p[0], p[1], p[2]}, &points[core + in_.layers.pointOffset(v)]);
     });
     return points;
 }
 
 PolyMesh Assembler::run() {
-    const double cells = double(coreCells_) + double(frontFaces_) * layers_;
-    const double points = double(corePoints_) + double(in_.front.front.size()) * layers_;
+    const double cells = double(coreCells_) + double(in_.layers.cells());
+    const double points = double(corePoints_) + double(in_.layers.points());
     if (std::max(cells, points) >= 2147483647.0) {
         throw Error(ErrorKind::input, fmt::format("{:.0f} cells are more than a mesh of 32-bit labels can hold", cells), "",
                     "give a larger --size or fewer --layers");
@@ -365,11 +380,12 @@ PolyMesh Assembler::run() {
 PolyMesh assemble(const AssembleInput& input) { return Assembler(input).run(); }
 
 void placeLayers(const LayerStack& layers, std::size_t vertex, const Vec3& front, const Vec3& wall, Vec3* out) {
-    const auto n = static_cast<std::size_t>(layers.count);
-    for (std::size_t k = 0; k < n; ++k) {
-        const double t = k + 1 == n ? 1.0 : static_cast<double>(layers.fraction(vertex, static_cast<int>(k)));
-        out[k] = t == 1.0 ? wall : front + (wall - front) * t;
-    }
+    std::array<double, maxLayers + 1> heights;
+    const double room = norm(front - wall);
+    layers.heights(vertex, room, heights.data());
+    const auto n = static_cast<std::size_t>(layers.pointsOf(vertex));
+    for (std::size_t k = 0; k + 1 < n; ++k) out[k] = room > 0 ? wall + (front - wall) * (heights[k] / room) : wall;
+    out[n - 1] = wall;
 }
 
 } // namespace i2b

@@ -1,77 +1,170 @@
+#include "i2b/core/error.h"
 #include "i2b/core/parallel.h"
+#include "i2b/geometry/part_names.h"
 #include "i2b/layers/layer_stack.h"
+#include <algorithm>
 #include <fmt/format.h>
+#include <limits>
+#include <numeric>
 
 namespace i2b {
 namespace {
 
-// first * (1 + r + ... + r^(n-1))
-double stackHeight(double first, double ratio, int n) {
-    double sum = 0, h = first;
-    for (int i = 0; i < n; ++i, h *= ratio) sum += h;
-    return sum;
+FrontMesh::FaceHandle faceAt(std::size_t f) { return FrontMesh::FaceHandle(static_cast<int>(f)); }
+FrontMesh::VertexHandle vertexAt(std::size_t v) { return FrontMesh::VertexHandle(static_cast<int>(v)); }
+
+// Cells that each face would have without neighbours.
+std::vector<std::uint8_t> wantedCounts(const Front& front, const LayerStack& stack) {
+    std::vector<std::uint8_t> counts(stack.faces);
+    parallelFor(stack.faces, [&](std::size_t f) {
+        double room = 0, h = 0;
+        int n = 0;
+        for (auto v : front.mesh.fv_range(faceAt(f))) {
+            const auto i = static_cast<std::size_t>(v.idx());
+            room += roomAt(front, i), h += front.h[i], ++n;
+        }
+        counts[f] = static_cast<std::uint8_t>(wantedCells(stack.planOfFace(f), room / n, h / n));
+    });
+    return counts;
 }
 
-// The growth ratio with which n layers that start at first fill the height; kept between 1/2 and 4.
-double solveGrowth(double first, double height, int n) {
-    double lo = 0.5, hi = 4;
-    if (stackHeight(first, hi, n) <= height) return hi;
-    if (stackHeight(first, lo, n) >= height) return lo;
-    for (int i = 0; i < 60; ++i) {
-        const double mid = 0.5 * (lo + hi);
-        (stackHeight(first, mid, n) < height ? lo : hi) = mid;
-    }
-    return 0.5 * (lo + hi);
+// The order in which plans have a say where they meet: more layers first, then lower ones, then as given.
+std::vector<std::uint16_t> rankPlans(const std::vector<LayerPlan>& plans) {
+    std::vector<std::uint16_t> order(plans.size()), rank(plans.size());
+    std::iota(order.begin(), order.end(), std::uint16_t(0));
+    const auto first = [&](std::uint16_t p) { return plans[p].fills() ? std::numeric_limits<double>::infinity() : plans[p].first; };
+    std::stable_sort(order.begin(), order.end(), [&](std::uint16_t a, std::uint16_t b) {
+        return plans[a].count != plans[b].count ? plans[a].count > plans[b].count : first(a) < first(b);
+    });
+    for (std::size_t i = 0; i < order.size(); ++i) rank[order[i]] = static_cast<std::uint16_t>(i);
+    return rank;
+}
+
+// Points and plan of each vertex: those of the highest stack around it.
+void countPoints(const Front& front, const std::vector<std::uint8_t>& counts, LayerStack& stack) {
+    const std::vector<std::uint16_t> rank = rankPlans(stack.plans);
+    const bool several = stack.plans.size() > 1;
+    stack.pointOffsets.assign(stack.vertices + 1, 0);
+    if (several) stack.vertexPlan.resize(stack.vertices);
+    parallelFor(stack.vertices, [&](std::size_t v) {
+        int most = 0;
+        std::uint16_t plan = 0;
+        for (auto face : front.mesh.vf_range(vertexAt(v))) {
+            const auto f = static_cast<std::size_t>(face.idx());
+            const std::uint16_t mine = several ? stack.facePlan[f] : std::uint16_t(0);
+            const int cells = counts[f];
+            if (cells > most || (cells == most && rank[mine] < rank[plan])) most = cells, plan = mine;
+        }
+        stack.pointOffsets[v] = static_cast<std::uint32_t>(most);
+        if (several) stack.vertexPlan[v] = plan;
+    });
+}
+
+void requireFew(std::uint64_t labels) {
+    if (labels < std::uint64_t(std::numeric_limits<std::int32_t>::max())) return;
+    throw Error(ErrorKind::input, fmt::format("{} layer cells are more than a mesh of 32-bit labels can hold", labels), "",
+                "give a larger --size or fewer --layers");
 }
 
 } // namespace
 
-LayerStack makeLayers(const Front& front, const LayerOptions& options) {
-    LayerStack stack;
-    stack.requested = options.count;
-    stack.count = std::max(1, options.count);
-    const int n = stack.count;
-    const std::size_t vertices = front.front.size();
-    stack.fractions.resize(vertices * static_cast<std::size_t>(n));
-    std::vector<double> first(vertices), asked(vertices);
-    parallelFor(vertices, [&](std::size_t v) {
-        const auto& p = front.mesh.point(FrontMesh::VertexHandle(static_cast<int>(v)));
-        const double height = norm(Vec3{p[0], p[1], p[2]} - front.front[v]);
-        const bool given = options.first > 0 && n > 1;
-        const double ratio = given ? solveGrowth(options.first, height, n) : options.growth;
-        const double sum = stackHeight(1, ratio, n);
-        double below = 0; // from the wall upwards
-        for (int k = n - 1; k >= 0; --k) {
-            stack.fractions[v * static_cast<std::size_t>(n) + static_cast<std::size_t>(k)] = static_cast<float>(1 - below);
-            below += std::pow(ratio, n - 1 - k) / sum;
+double roomAt(const Front& front, std::size_t vertex) {
+    const auto& p = front.mesh.point(vertexAt(vertex));
+    return norm(Vec3{p[0], p[1], p[2]} - front.front[vertex]);
+}
+
+WallPlans plansOf(const LayerOptions& options, const std::vector<Part>& parts) {
+    WallPlans out;
+    out.plans.push_back(planOf(requestOf(options), options.unit));
+    if (options.parts.empty()) return out;
+    if (options.parts.size() > std::numeric_limits<std::uint16_t>::max() - 1U) {
+        throw Error(ErrorKind::usage, fmt::format("{} rules for layers are too many", options.parts.size()), "part-layers", "use expressions");
+    }
+    out.ofPart.assign(parts.size(), 0);
+    for (const PartLayers& rule : options.parts) {
+        const NamePattern pattern(rule.part);
+        bool found = false;
+        for (std::size_t p = 0; p < parts.size(); ++p) {
+            if (pattern.matches(parts[p].name)) out.ofPart[p] = static_cast<std::uint16_t>(out.plans.size()), found = true;
         }
-        first[v] = height / sum;
-        asked[v] = options.first > 0 ? std::min(1.0, height / std::max(1e-300, stackHeight(options.first, options.growth, n))) : 1;
-    });
-    const auto add = [](double a, double b) { return a + b; };
-    const auto mean = [&](const std::vector<double>& values) {
-        const double sum = orderedReduce(
-            values.size(), 0.0,
-            [&](std::size_t b, std::size_t e) {
-                double s = 0;
-                for (std::size_t i = b; i < e; ++i) s += values[i];
-                return s;
-            },
-            add);
-        return values.empty() ? 0 : sum / static_cast<double>(values.size());
-    };
-    stack.meanFirstHeight = mean(first);
-    stack.thicknessFraction = mean(asked);
-    stack.meanCount = n;
-    stack.facesCovered = 1;
+        if (!found) out.notes.push_back(fmt::format("no part is named '{}', which has layers of its own", rule.part));
+        out.plans.push_back(planOf(requestOf(options, rule), options.unit));
+    }
+    return out;
+}
+
+LayerStack makeLayers(const Front& front, const WallPlans& plans) {
+    LayerStack stack;
+    stack.plans = plans.plans;
+    stack.faces = front.ownerCell.size();
+    stack.vertices = front.front.size();
+    if (!plans.ofPart.empty()) {
+        stack.facePlan.resize(stack.faces);
+        parallelFor(stack.faces, [&](std::size_t f) { stack.facePlan[f] = plans.ofPart[static_cast<std::size_t>(front.part[f])]; });
+    }
+    if (plans.plans.front().relative) {
+        stack.cellSize.resize(stack.vertices);
+        parallelFor(stack.vertices, [&](std::size_t v) { stack.cellSize[v] = static_cast<float>(front.h[v]); });
+    }
+    stack.count = std::max(1, plans.plans.front().count);
+    if (plans.ofPart.empty() && plans.plans.front().fills()) return stack; // all alike
+    std::vector<std::uint8_t> counts = wantedCounts(front, stack);
+    taperCounts(front.mesh, counts);
+    const auto [least, most] = std::minmax_element(counts.begin(), counts.end());
+    stack.count = counts.empty() ? 1 : *most;
+    const bool alike = counts.empty() || *least == *most;
+    if (alike && stack.plans.size() == 1) return stack;
+    countPoints(front, counts, stack);
+    stack.cellOffsets.assign(counts.begin(), counts.end());
+    stack.cellOffsets.push_back(0);
+    requireFew(std::accumulate(counts.begin(), counts.end(), std::uint64_t(0)));
+    requireFew(std::accumulate(stack.pointOffsets.begin(), stack.pointOffsets.end(), std::uint64_t(0)));
+    exclusiveScan(stack.cellOffsets);
+    exclusiveScan(stack.pointOffsets);
     return stack;
 }
 
-std::string LayerStack::validate() const {
-    for (std::size_t i = 0; i < fractions.size(); ++i) {
-        const bool last = (i + 1) % static_cast<std::size_t>(count) == 0;
-        const float below = i % static_cast<std::size_t>(count) == 0 ? 0.0f : fractions[i - 1];
-        if (!(fractions[i] > below) || (last && fractions[i] != 1.0f)) return fmt::format("fractions of vertex {} do not rise to 1", i / static_cast<std::size_t>(count));
+LayerStack makeLayers(const Front& front, const LayerOptions& options) {
+    WallPlans plans;
+    plans.plans.push_back(planOf(requestOf(options), options.unit));
+    return makeLayers(front, plans);
+}
+
+std::size_t LayerStack::vertexOfPoint(std::size_t point) const {
+    if (uniform()) return point / static_cast<std::size_t>(count);
+    return static_cast<std::size_t>(std::upper_bound(pointOffsets.begin(), pointOffsets.end(), point) - pointOffsets.begin()) - 1;
+}
+
+void LayerStack::heights(std::size_t vertex, double room, double* out) const {
+    const int n = pointsOf(vertex);
+    stackLevels(planOfVertex(vertex), room, cellSize.empty() ? 1.0 : static_cast<double>(cellSize[vertex]), n, out);
+    std::reverse(out, out + n - 1);
+    out[n - 1] = 0;
+}
+
+std::string LayerStack::validate(const Front& front) const {
+    if (faces != front.ownerCell.size() || vertices != front.front.size() || plans.empty()) return "sizes of arrays";
+    if (!uniform() && (cellOffsets.size() != faces + 1 || pointOffsets.size() != vertices + 1)) return "sizes of arrays";
+    for (std::size_t f = 0; f < faces; ++f) {
+        const int mine = cellsOf(f);
+        if (mine < 1) return fmt::format("face {} has no cell", f);
+        for (auto he : front.mesh.fh_range(faceAt(f))) {
+            const auto other = front.mesh.opposite_face_handle(he);
+            if (other.is_valid() && std::abs(mine - cellsOf(static_cast<std::size_t>(other.idx()))) > 1)
+                return fmt::format("faces {} and {} differ by more than a cell", f, other.idx());
+            const auto v = static_cast<std::size_t>(front.mesh.to_vertex_handle(he).idx());
+            if (pointsOf(v) < mine) return fmt::format("vertex {} has {} points where face {} has {} cells", v, pointsOf(v), f, mine);
+        }
+    }
+    std::vector<double> z;
+    for (std::size_t v = 0; v < vertices; ++v) {
+        z.resize(static_cast<std::size_t>(pointsOf(v)));
+        double below = roomAt(front, v);
+        heights(v, below, z.data());
+        for (double height : z) {
+            if (!(height < below)) return fmt::format("points of vertex {} do not fall to the wall", v);
+            below = height;
+        }
     }
     return "";
 }

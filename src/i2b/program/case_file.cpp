@@ -56,9 +56,9 @@ struct Value {
         if (!node.is_array()) wrongType(node, "a list");
         return *node.as_array();
     }
-    // The entries of a table, all of which must be there and no others.
-    std::vector<const toml::node*> entries(const toml::node& at,
-                                           const std::vector<std::string_view>& names) const {
+    // The entries of a table, all of which must be there but optional ones, and no others. Null: left out.
+    std::vector<const toml::node*> entries(const toml::node& at, const std::vector<std::string_view>& names,
+                                           const std::vector<bool>& optional = {}) const {
         const toml::table* const table = at.as_table();
         const std::string expected = fmt::format("{{ {} = ... }}", fmt::join(names, " = ..., "));
         if (!table) wrongType(at, expected);
@@ -67,8 +67,8 @@ struct Value {
         for (const auto& [name, entry] : *table)
             if (std::ranges::find(names, name.str()) == names.end())
                 refuse(entry, fmt::format("unknown entry '{}'", name.str()), "write " + expected);
-        if (std::ranges::find(found, nullptr) != found.end())
-            refuse(at, "an entry is missing", "write " + expected);
+        for (std::size_t i = 0; i < found.size(); ++i)
+            if (!found[i] && (i >= optional.size() || !optional[i])) refuse(at, "an entry is missing", "write " + expected);
         return found;
     }
 };
@@ -84,6 +84,11 @@ void read(const Value& v, bool& field) {
     field = *v.node.value<bool>();
 }
 void read(const Value& v, std::string& field) { field = v.text(v.node); }
+void read(const Value& v, LayerUnit& field) {
+    const auto unit = layerUnitNamed(v.text(v.node));
+    if (!unit) v.refuse(v.node, fmt::format("'{}' is neither m nor cell", v.text(v.node)), "write \"m\" or \"cell\"");
+    field = *unit;
+}
 void read(const Value& v, std::optional<Box>& field) { field = v.box(v.node); }
 void read(const Value& v, std::vector<std::string>& field) {
     field.clear();
@@ -92,6 +97,12 @@ void read(const Value& v, std::vector<std::string>& field) {
 }
 void readEntry(const Value& v, const toml::node& at, std::string& entry, bool) { entry = v.text(at); }
 void readEntry(const Value& v, const toml::node& at, double& entry, bool) { entry = v.number(at); }
+void readEntry(const Value& v, const toml::node& at, int& entry, bool) { // a count, of which none is 0
+    const auto value = at.is_integer() ? at.value<int>() : std::nullopt;
+    const bool none = at.is_string() && v.text(at) == "none";
+    if (!value && !none) v.wrongType(at, "a whole number, or \"none\"");
+    entry = value.value_or(0);
+}
 void readEntry(const Value& v, const toml::node& at, Box& entry, bool) { entry = v.box(at); }
 void readEntry(const Value& v, const toml::node& at, BoxEdges& entry, bool) {
     const auto edges = boxEdgesNamed(v.text(at));
@@ -109,9 +120,12 @@ void read(const Value& v, std::vector<T>& field) {
         T& target = field.emplace_back();
         std::apply(
             [&](const auto&... entry) {
-                const auto nodes = v.entries(item, {entry.name...});
-                std::size_t i = 0;
-                (readEntry(v, *nodes[i++], target.*(entry.member), entry.size), ...);
+                const auto nodes = v.entries(item, {entry.name...}, {entry.optional...});
+                auto next = nodes.begin();
+                const auto take = [&](const auto& e) {
+                    if (const toml::node* const node = *next++) readEntry(v, *node, target.*(e.member), e.size);
+                };
+                (take(entry), ...);
             },
             entriesOf(target));
     }
@@ -165,6 +179,7 @@ std::string show(double value) { return fmt::format("{}", value); }
 std::string show(int value) { return fmt::format("{}", value); }
 std::string show(bool value) { return value ? "true" : "false"; }
 std::string show(const std::string& value) { return quoted(value); }
+std::string show(LayerUnit unit) { return quoted(std::string(nameOf(unit))); }
 std::string show(BoxEdges edges) { return quoted(std::string(nameOf(edges))); }
 std::string show(const Vec3& p) { return fmt::format("[{}, {}, {}]", p.x, p.y, p.z); }
 std::string show(const Box& b) {

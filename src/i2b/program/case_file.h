@@ -25,6 +25,17 @@
 //   [[feature.box]]                     # the last one that holds a place decides there
 //   box = [0, -1, 0, 4, 1, 1]
 //   edges = "none"                      # or "all"
+//
+// And layers, where count, first, thickness, growth and unit are layers, first-layer, layer-thickness, growth and
+// layer-unit; of a part, all but its name and count may be left out:
+//
+//   [layer]
+//   count = 5
+//   first = 0.001
+//   [[layer.part]]                      # the last one that names a part decides there
+//   part = "wheel.*"
+//   count = 2                           # or "none"
+//   growth = 1.3
 #pragma once
 #include "i2b/program/settings.h"
 #include <string>

@@ -2,6 +2,7 @@
 #include "i2b/core/error.h"
 #include "i2b/program/case_file.h"
 #include "i2b/program/edits.h"
+#include "i2b/program/entries.h"
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -22,6 +23,7 @@ std::string defaultOf(const Setting& setting) {
         return fmt::format("{}", (*f)(fresh));
     if (const auto* const f = std::get_if<FieldOf<int>>(&setting.field))
         return fmt::format("{}", (*f)(fresh));
+    if (const auto* const f = std::get_if<FieldOf<LayerUnit>>(&setting.field)) return std::string(nameOf((*f)(fresh)));
     if (const auto* const f = std::get_if<FieldOf<std::string>>(&setting.field)) return (*f)(fresh);
     if (const auto* const f = std::get_if<FieldOf<std::vector<std::string>>>(&setting.field))
         return fmt::format("{}", fmt::join((*f)(fresh), ","));

@@ -99,6 +99,33 @@ T toItem(const std::string& option, std::string text) {
     return item;
 }
 
+// "PART=N,first=H,thickness=T,growth=R", taken from the back: an expression may hold commas and = itself.
+PartLayers toPartLayers(const std::string& option, std::string text) {
+    const std::string form = "write PART=N or PART=none, and after it any of ,first=H ,thickness=T ,growth=R";
+    PartLayers rule;
+    const std::map<std::string, double PartLayers::*, std::less<>> figures{
+        {"first", &PartLayers::first}, {"thickness", &PartLayers::thickness}, {"growth", &PartLayers::growth}};
+    for (;;) {
+        const std::size_t equals = text.rfind('=');
+        if (equals == std::string::npos || equals == 0) refuse(option, "the number of layers is missing", form);
+        const std::string value = text.substr(equals + 1);
+        const std::size_t comma = text.rfind(',', equals);
+        const auto figure = comma == std::string::npos ? figures.end() : figures.find(text.substr(comma + 1, equals - comma - 1));
+        text.resize(figure == figures.end() ? equals : comma);
+        if (figure != figures.end()) {
+            rule.*(figure->second) = toNumber(option, value);
+            continue;
+        }
+        rule.part = text;
+        const auto [end, fault] = std::from_chars(value.data(), value.data() + value.size(), rule.count);
+        if (value == "none")
+            rule.count = 0;
+        else if (fault != std::errc() || end != value.data() + value.size())
+            refuse(option, fmt::format("'{}' is no whole number", value), form);
+        return rule;
+    }
+}
+
 // The text after an option to the change it stands for.
 struct Visitor {
     const std::string &option, &text;
@@ -147,6 +174,14 @@ struct Visitor {
         const std::string numbers = comma == std::string::npos ? "" : text.substr(0, comma);
         const FeatureBox value{toBox(toNumbers(option, numbers, 6)), *edges};
         return [=](Case& c) { f(c).push_back(value); };
+    }
+    Edit operator()(FieldOf<LayerUnit> f) const {
+        const auto unit = layerUnitNamed(text);
+        if (!unit) refuse(option, fmt::format("'{}' is neither m nor cell", text), "write m or cell");
+        return set(f, *unit);
+    }
+    Edit operator()(FieldOf<std::vector<PartLayers>> f) const {
+        return [=, value = toPartLayers(option, text)](Case& c) { f(c).push_back(value); };
     }
     Edit operator()(FieldOf<std::vector<Seed>> f) const {
         const std::size_t equals = text.find('=');

@@ -15,6 +15,7 @@ struct Entry {
     std::string_view name;
     V T::*member;
     bool size = false; // a Vec3 that may be written as one number for all axes
+    bool optional = false; // may be left out of a case file
 };
 
 inline auto entriesOf(const PartSize&) {
@@ -49,6 +50,19 @@ inline auto entriesOf(const LineSize&) {
 
 inline auto entriesOf(const FeatureBox&) {
     return std::tuple{Entry{"box", &FeatureBox::box}, Entry{"edges", &FeatureBox::edges}};
+}
+
+inline auto entriesOf(const PartLayers&) {
+    return std::tuple{Entry{"part", &PartLayers::part}, Entry{"count", &PartLayers::count},
+                      Entry{"first", &PartLayers::first, false, true}, Entry{"thickness", &PartLayers::thickness, false, true},
+                      Entry{"growth", &PartLayers::growth, false, true}};
+}
+
+inline std::string_view nameOf(LayerUnit unit) { return unit == LayerUnit::cell ? "cell" : "m"; }
+inline std::optional<LayerUnit> layerUnitNamed(std::string_view name) {
+    for (const LayerUnit unit : {LayerUnit::metre, LayerUnit::cell})
+        if (nameOf(unit) == name) return unit;
+    return {};
 }
 
 inline std::string_view nameOf(BoxEdges edges) { return edges == BoxEdges::all ? "all" : "none"; }

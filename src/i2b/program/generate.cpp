@@ -122,9 +122,10 @@ MeshResult generate(const Options& options, Context& context) {
         [&] { return fitFront(front, *lattice, *c.index, features, options.fit, context); },
         [](const FitSummary& s) { return s.wallNodes; });
     assignParts(front, *c.index);
+    const WallPlans plans = plansOf(options.layers, c.surface.parts);
+    notes.insert(notes.end(), plans.notes.begin(), plans.notes.end());
     LayerStack layers = stage(
-        context, "layers", [&] { return makeLayers(front, options.layers); },
-        [&](const LayerStack& l) { return front.ownerCell.size() * static_cast<std::size_t>(l.count); });
+        context, "layers", [&] { return makeLayers(front, plans); }, [](const LayerStack& l) { return l.cells(); });
     out.mesh = stage(
         context, "assemble", [&] { return assemble({*lattice, c.kept, front, layers, c.surface.parts}); }, [](const PolyMesh& m) { return m.cells; });
     const RepairSummary repaired = stage(context, "repair", [&] { return repair(out.mesh, front, *lattice, layers, startThickness); },
@@ -133,8 +134,9 @@ MeshResult generate(const Options& options, Context& context) {
         throw Error(ErrorKind::internal, fmt::format("{} cells could not be made valid", repaired.remaining), "", "please report the case");
     }
     out.report = reportOf(c, options, context);
-    out.report.layers =
-        LayerReport{options.layers.count, layers.meanCount, layers.facesCovered, layers.thicknessFraction};
+    out.walls = measureLayers(front, layers);
+    out.report.layers = summarize(out.walls, front, c.surface.parts, options.layers.count);
+    for (std::int32_t& cell : out.walls.wallCell) cell += static_cast<std::int32_t>(lattice->cellCount());
     out.report.wallFaces = static_cast<std::int64_t>(front.ownerCell.size());
     front = {}, layers = {}; // from here on the mesh speaks for itself
     lattice.reset();

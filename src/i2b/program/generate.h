@@ -7,6 +7,7 @@
 #include "i2b/geometry/feature_lines.h"
 #include "i2b/geometry/read.h"
 #include "i2b/geometry/surface_index.h"
+#include "i2b/layers/layer_report.h"
 #include "i2b/options.h"
 #include "i2b/paint/regions.h"
 #include "i2b/sizing/size_field.h"
@@ -30,6 +31,7 @@ struct GridResult {
 struct MeshResult {
     std::unique_ptr<GridResult> cartesian;
     PolyMesh mesh;
+    WallLayers walls; // wallCell: of the mesh
     RunReport report; // all but the total time and memory, which the caller knows at its end
 };
 

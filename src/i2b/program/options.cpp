@@ -1,5 +1,7 @@
 #include "i2b/program/options.h"
 #include "i2b/core/error.h"
+#include "i2b/layers/layer_plan.h"
+#include "i2b/program/entries.h"
 #include <fmt/format.h>
 #include <regex>
 
@@ -138,6 +140,56 @@ void checkDomain(const DomainOptions& domain, Checker& check) {
     }
 }
 
+// The flow past the plate that y-plus is taken from.
+void checkPlate(const LayerOptions& layers, Checker& check) {
+    constexpr double leastReynolds = 1e3; // where the fit has long lost its meaning
+    const bool any = layers.yPlus > 0 || layers.velocity > 0 || layers.viscosity > 0 || layers.length > 0;
+    const bool all = layers.yPlus > 0 && layers.velocity > 0 && layers.viscosity > 0 && layers.length > 0;
+    if (any && !all) check.add("y-plus", "y-plus, velocity, viscosity and length belong together", "give all four, or none");
+    if (!all) return;
+    if (layers.first > 0) check.add("y-plus", "y-plus and first-layer exclude each other", "give one of the two");
+    if (layers.unit == LayerUnit::cell) check.add("y-plus", "y-plus gives metres where layer-unit is cell", "give layer-unit m");
+    const double reynolds = layers.velocity * layers.length / layers.viscosity;
+    if (!(reynolds >= leastReynolds && std::isfinite(reynolds)))
+        check.add("y-plus", fmt::format("the Reynolds number is {:.3g}, too low for a turbulent wall", reynolds),
+                  "check velocity, viscosity and length");
+}
+
+void checkPartLayers(const PartLayers& part, Checker& check) {
+    checkName("part-layers", part.part, check);
+    const auto spoilt = [&](const std::string& what, const char* remedy) {
+        check.add("part-layers", fmt::format("of '{}' {}", part.part, what), remedy);
+    };
+    if (part.count < 0 || part.count > maxLayers) spoilt(fmt::format("the count is {}", part.count), "give 0 (none) to 100 layers");
+    for (const auto& [name, height] : {std::pair("first", part.first), std::pair("thickness", part.thickness)})
+        if (!(height >= 0 && std::isfinite(height)))
+            spoilt(fmt::format("{} is {}", name, height), "give a positive length in layer-unit, or 0: as for all walls");
+    if (part.growth != 0 && !(part.growth >= leastGrowth && part.growth <= mostGrowth))
+        spoilt(fmt::format("growth is {}", part.growth), "give 0.5 to 4, or 0: as for all walls");
+}
+
+void checkLayers(const LayerOptions& layers, Checker& check) {
+    const std::size_t before = check.problems.size();
+    check.within("layers", layers.count, 0, maxLayers);
+    check.length("first-layer", layers.first, "from layer-thickness, else from the room");
+    check.length("layer-thickness", layers.thickness, "from first-layer, else all the room");
+    if (layers.growth != 0) check.within("growth", layers.growth, leastGrowth, mostGrowth);
+    for (const PartLayers& part : layers.parts) checkPartLayers(part, check);
+    const std::pair<const char*, double> figures[] = {
+        {"y-plus", layers.yPlus}, {"velocity", layers.velocity}, {"viscosity", layers.viscosity}, {"length", layers.length}};
+    for (const auto& [key, value] : figures)
+        if (!(value >= 0 && std::isfinite(value))) check.add(key, fmt::format("{} is {}", key, value), "give a positive number, or 0: not given");
+    if (check.problems.size() > before) return; // what follows needs figures that make sense
+    checkPlate(layers, check);
+    if (check.problems.size() > before) return;
+    const char* const remedy = "give two of first height, thickness and growth";
+    if (const std::string fault = faultOf(requestOf(layers)); !fault.empty())
+        return check.add(layers.growth > 0 ? "growth" : "layer-thickness", fault, remedy);
+    for (const PartLayers& part : layers.parts)
+        if (const std::string fault = faultOf(requestOf(layers, part)); !fault.empty())
+            check.add("part-layers", fmt::format("of '{}' {}", part.part, fault), remedy);
+}
+
 void checkOutput(const OutputOptions& output, Checker& check) {
     if (output.folder.empty()) check.add("out", "out is empty", "name a folder");
     for (const std::string& format : output.formats)
@@ -156,9 +208,7 @@ std::vector<Problem> validate(const Options& options) {
     checkFeatures(options.geometry, check);
     check.within("clearance", options.fit.clearance, 0, 1);
     check.within("sweeps", options.fit.sweeps, 0, 100);
-    check.within("layers", options.layers.count, 0, 100);
-    check.length("first-layer", options.layers.first, "from the room and the growth");
-    check.within("growth", options.layers.growth, 0.5, 4);
+    checkLayers(options.layers, check);
     checkOutput(options.output, check);
     check.within("threads", options.threads, 0, 4096);
     return check.problems;

@@ -40,6 +40,7 @@ using Field = std::variant<FieldOf<double>, FieldOf<int>, FieldOf<bool>, FieldOf
                            FieldOf<std::vector<PointSize>>, FieldOf<std::vector<SegmentSize>>,
                            FieldOf<std::vector<LineSize>>, FieldOf<std::vector<FeatureBox>>,
                            FieldOf<std::vector<Seed>>,
+                           FieldOf<std::vector<PartLayers>>, FieldOf<LayerUnit>,
                            FieldOf<std::optional<Box>>, FlowChoice>;
 
 struct Setting {
@@ -47,7 +48,7 @@ struct Setting {
     std::string_view value; // what follows the option on the command line; empty for a switch
     std::string_view help;  // with the unit
     Field field;
-    std::string_view table = {};   // of a case file, [size] or [feature], where it may stand, too; empty: none
+    std::string_view table = {};   // of a case file, [size], [feature] or [layer], where it may stand, too; empty: none
     std::string_view inTable = {}; // what it is called there
 };
 

@@ -19,7 +19,18 @@ bool wants(const OutputOptions& output, const char* format) {
     return std::ranges::find(output.formats, format) != output.formats.end();
 }
 
-void writeMeshFiles(const PolyMesh& mesh, const OutputOptions& output, AtomicFolder& folder,
+// What the layers came to, on the cells at the wall.
+std::vector<CellData> layerData(const WallLayers& walls) {
+    const auto data = [&](const char* name, const auto& values) {
+        CellData d{name, std::vector<float>(values.size()), &walls.wallCell};
+        std::transform(values.begin(), values.end(), d.values.begin(), [](auto v) { return static_cast<float>(v); });
+        return d;
+    };
+    return {data("layersAsked", walls.asked), data("layersAchieved", walls.achieved), data("layerCause", walls.cause),
+            data("firstLayerHeight", walls.first), data("layerThickness", walls.thickness)};
+}
+
+void writeMeshFiles(const PolyMesh& mesh, const WallLayers& walls, const OutputOptions& output, AtomicFolder& folder,
                     Context& context) {
     Stage stage(context, "write");
     stage.items = static_cast<std::uint64_t>(mesh.cells);
@@ -31,9 +42,10 @@ void writeMeshFiles(const PolyMesh& mesh, const OutputOptions& output, AtomicFol
     }
     if (wants(output, "vtu")) {
         CellQuality q = measureCellQuality(mesh);
-        const std::vector<CellData> data{{"nonOrthogonality", std::move(q.nonOrthogonality)},
-                                         {"skewness", std::move(q.skewness)},
-                                         {"volume", std::move(q.volume)}};
+        std::vector<CellData> data = layerData(walls);
+        data.push_back({"nonOrthogonality", std::move(q.nonOrthogonality)});
+        data.push_back({"skewness", std::move(q.skewness)});
+        data.push_back({"volume", std::move(q.volume)});
         writeVtu(mesh, data, folder.place("mesh.vtu"), {}, context);
     }
     if (wants(output, "ply")) writePly(mesh, folder.place("wall.ply"), context);
@@ -69,8 +81,8 @@ void writeReportFile(RunReport& report, const OutputOptions& output, AtomicFolde
 void writeMeshResults(MeshResult& result, const Options& options, Context& context,
                       const CompleteReport& complete) {
     AtomicFolder folder(options.output.folder);
-    writeMeshFiles(result.mesh, options.output, folder, context);
-    result.mesh = {}; // on the disk by now
+    writeMeshFiles(result.mesh, result.walls, options.output, folder, context);
+    result.mesh = {}, result.walls = {}; // on the disk by now
     returnFreedMemory();
     writeGridFile(*result.cartesian, result.report, options, folder, context);
     writeReportFile(result.report, options.output, folder, complete);

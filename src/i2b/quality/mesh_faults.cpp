@@ -25,8 +25,8 @@ bool isBad(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::span<
 
 } // namespace
 
-MeshFaults::MeshFaults(const PolyMesh& mesh, const Rows& cellFaces, const QualityLimits& limits)
-    : mesh_(mesh), cellFaces_(cellFaces), limits_(limits),
+MeshFaults::MeshFaults(const PolyMesh& mesh, const Rows& cellFaces, const QualityLimits& limits, std::int32_t thinFrom)
+    : mesh_(mesh), cellFaces_(cellFaces), limits_(limits), thinFrom_(thinFrom),
       severeCosine_(std::cos(limits.nonOrthogonality * std::numbers::pi / 180)), moments_(Index(mesh.cells)),
       cellFlags_(Index(mesh.cells), 0), faceFlags_(Index(mesh.faces()), 0), moved_(mesh.points.size(), 0),
       changed_(Index(mesh.cells), 0) {
@@ -42,7 +42,7 @@ void MeshFaults::measureCellAt(std::int32_t cell, CellFaceShapes& faceShapes) {
     const std::span<const FaceShape> shapes = faceShapes.of(faces);
     CellMoments& moments = moments_[Index(cell)];
     moments = measureCell(mesh_, faces, shapes, cell);
-    const bool low = cellDeterminant(mesh_, faces, shapes, Directions()) < limits_.determinant;
+    const bool low = cell < thinFrom_ && cellDeterminant(mesh_, faces, shapes, Directions()) < limits_.determinant;
     cellFlags_[Index(cell)] =
         static_cast<std::uint8_t>((isBad(mesh_, faces, shapes, cell, moments) ? bad : 0) | (low ? lowDeterminant : 0));
 }
@@ -56,8 +56,9 @@ void MeshFaults::measureFaceAt(std::int32_t face) {
         const CellMoments& nei = moments_[Index(mesh_.neighbour[Index(face)])];
         const PairValues values = pairValues(shape, own, nei);
         neighbour = &nei.centre;
-        flags = (values.ortho < severeCosine_ ? nonOrthogonal : 0) | (values.weight < limits_.faceWeight ? lowWeight : 0) |
-                (values.ratio < limits_.volumeRatio ? lowRatio : 0);
+        flags = values.ortho < severeCosine_ ? nonOrthogonal : 0;
+        if (mesh_.owner[Index(face)] < thinFrom_) // the other side is the higher number
+            flags |= (values.weight < limits_.faceWeight ? lowWeight : 0) | (values.ratio < limits_.volumeRatio ? lowRatio : 0);
     }
     if (faceSkewness(mesh_, face, shape, own.centre, neighbour, limits_.skewness) > limits_.skewness) flags |= skew;
     faceFlags_[Index(face)] = static_cast<std::uint8_t>(flags);

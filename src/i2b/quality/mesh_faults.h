@@ -3,6 +3,7 @@
 #pragma once
 #include "i2b/quality/mesh_geometry.h"
 #include "i2b/quality/quality_report.h"
+#include <limits>
 
 namespace i2b {
 
@@ -15,8 +16,10 @@ struct FaultCount {
 
 class MeshFaults {
   public:
-    // Keeps references. limits: those of orthogonality, skewness, weight, volume ratio and determinant count.
-    MeshFaults(const PolyMesh& mesh, const Rows& cellFaces, const QualityLimits& limits);
+    // Keeps references. limits: those of orthogonality, skewness, weight, volume ratio and determinant count. Cells from
+    // thinFrom on may be as thin as they are: their determinants do not count, nor weights and volume ratios among them.
+    MeshFaults(const PolyMesh& mesh, const Rows& cellFaces, const QualityLimits& limits,
+               std::int32_t thinFrom = std::numeric_limits<std::int32_t>::max());
 
     // After points have moved. seeds: cells among which every moved point has one that uses it.
     void update(const std::vector<std::int32_t>& movedPoints, const std::vector<std::int32_t>& seeds);
@@ -38,6 +41,7 @@ class MeshFaults {
     const PolyMesh& mesh_;
     const Rows& cellFaces_;
     QualityLimits limits_;
+    std::int32_t thinFrom_;
     double severeCosine_;
     RawVector<CellMoments> moments_;
     std::vector<std::uint8_t> cellFlags_, faceFlags_;

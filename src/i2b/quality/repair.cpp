@@ -56,7 +56,7 @@ class Nodes {
     // Of a mesh point; the points of a layer belong to the fan.
     std::size_t of(std::int32_t point) const {
         const auto p = static_cast<std::size_t>(point);
-        return p < core_ ? p : core_ + (p - core_) / static_cast<std::size_t>(layers_.count);
+        return p < core_ ? p : core_ + layers_.vertexOfPoint(p - core_);
     }
     // The place of a layer point hangs on the front point of its fan too, which its cell may not have.
     bool ofLayer(std::int32_t point) const { return static_cast<std::size_t>(point) >= core_; }
@@ -110,13 +110,12 @@ std::vector<std::int32_t> Nodes::place(std::vector<Vec3>& points) {
         const auto p = static_cast<std::size_t>(front_.movedPoints[i]);
         if (touched_[p]) put(p, behind_[i].at(beta[p]));
     }
-    const auto n = static_cast<std::size_t>(layers_.count);
     for (std::size_t v = 0; v < wall_.size(); ++v) {
         const auto p = static_cast<std::size_t>(front_.corePoint[v]);
         const bool frontMoves = frontTouched(v);
         if (frontMoves) put(p, frontNow(v));
         if (!frontMoves && !touched_[core_ + v]) continue;
-        const std::size_t first = core_ + v * n;
+        const std::size_t first = core_ + layers_.pointOffset(v), n = static_cast<std::size_t>(layers_.pointsOf(v));
         placeLayers(layers_, v, frontNow(v), wall_[v].at(beta[core_ + v]), &points[first]);
         for (std::size_t k = 0; k < n; ++k) moved.push_back(static_cast<std::int32_t>(first + k));
     }
@@ -216,7 +215,9 @@ void Retreat::restore(const std::vector<float>& beta) {
 RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, const LayerStack& layers, double startThickness) {
     RepairSummary summary;
     const Rows cellFaces = buildCellFaces(mesh);
-    MeshFaults faults(mesh, cellFaces, strictLimits());
+    // Layers of a height that was asked for are thin on purpose: nodes off the wall would not mend them.
+    const std::int32_t thinFrom = layers.asHighAsCan() ? mesh.cells : mesh.cells - static_cast<std::int32_t>(layers.cells());
+    MeshFaults faults(mesh, cellFaces, strictLimits(), thinFrom);
     std::vector<std::int32_t> bad = faults.badCells();
     summary.badCells = static_cast<std::int64_t>(bad.size());
     FaultCount least;

@@ -1,6 +1,7 @@
 // Everything a run has to tell about itself, as values; report_write.h turns it into report.json.
 #pragma once
 #include "i2b/core/context.h"
+#include "i2b/layers/layer_report.h"
 #include "i2b/paint/regions.h"
 #include "i2b/quality/fit_report.h"
 #include "i2b/quality/quality_report.h"
@@ -14,13 +15,6 @@ namespace i2b {
 struct ReportPart {
     std::string name;
     std::uint64_t triangles = 0;
-};
-
-struct LayerReport {
-    int requested = 0;               // prism layers asked for
-    double meanCount = 0;            // layers achieved, mean over the wall faces
-    double facesCoveredFraction = 0; // wall faces with at least one layer
-    double thicknessFraction = 0;    // achieved over requested thickness, mean over the wall faces
 };
 
 struct RunReport {

@@ -37,11 +37,31 @@ Json fitJson(const FitReport& f) {
             {"part_border_samples", f.borderSamples}};
 }
 
+Json layerRowJson(const LayerRow& row) {
+    Json shorter;
+    for (std::size_t c = 1; c < layerCauseNames.size(); ++c) shorter[layerCauseNames[c]] = row.causes[c];
+    return {{"name", row.part},
+            {"requested", row.asked},
+            {"requested_first_height", number(row.askedFirst)},
+            {"requested_thickness", number(row.askedThickness)},
+            {"mean_count", number(row.meanCount)},
+            {"mean_first_height", number(row.meanFirst)},
+            {"mean_thickness", number(row.meanThickness)},
+            {"faces", row.faces},
+            {"faces_short", shorter}};
+}
+
 Json layersJson(const LayerReport& l) {
+    Json parts = Json::array();
+    for (const LayerRow& row : l.parts) parts.push_back(layerRowJson(row));
     return {{"requested", l.requested},
             {"mean_count", number(l.meanCount)},
             {"faces_covered_fraction", number(l.facesCoveredFraction)},
-            {"thickness_fraction", number(l.thicknessFraction)}};
+            {"thickness_fraction", number(l.thicknessFraction)},
+            {"mean_first_height", number(l.meanFirst)},
+            {"min_first_height", number(l.minFirst)},
+            {"max_first_height", number(l.maxFirst)},
+            {"parts", parts}};
 }
 
 Json regionJson(const Region& r, const std::vector<ReportPart>& parts) {

@@ -298,6 +298,16 @@ void writeGroup(OutputFile& file, const char* name, std::span<Array> arrays) {
     file.write(fmt::format("      </{}>\n", name));
 }
 
+// Values of some cells, 0 in all others. Keeps references.
+Array sparseArray(const std::string& name, const std::vector<std::int32_t>& cells, const std::vector<float>& values, std::size_t all) {
+    return {attributes<float>(name), all, sizeof(float), [&](std::size_t begin, std::size_t end, char* out) {
+                std::memset(out, 0, (end - begin) * sizeof(float));
+                auto at = std::lower_bound(cells.begin(), cells.end(), static_cast<std::int32_t>(begin));
+                for (; at != cells.end() && static_cast<std::size_t>(*at) < end; ++at)
+                    std::memcpy(out + (static_cast<std::size_t>(*at) - begin) * sizeof(float), &values[static_cast<std::size_t>(at - cells.begin())], sizeof(float));
+            }};
+}
+
 std::vector<Array> cellArrays(const PolyMesh& mesh, const std::vector<CellData>& data,
                               const std::vector<std::int32_t>& walls) {
     std::vector<Array> arrays;
@@ -305,7 +315,9 @@ std::vector<Array> cellArrays(const PolyMesh& mesh, const std::vector<CellData>&
     if (!mesh.cellLayer.empty()) arrays.push_back(plainArray<std::uint8_t>("layer", mesh.cellLayer));
     if (!mesh.cellRegion.empty()) arrays.push_back(plainArray<std::int32_t>("region", mesh.cellRegion));
     arrays.push_back(plainArray<std::int32_t>("patch", walls));
-    for (const CellData& d : data) arrays.push_back(plainArray<float>(d.name, d.values));
+    for (const CellData& d : data)
+        arrays.push_back(d.cells && d.cells->size() == d.values.size() ? sparseArray(d.name, *d.cells, d.values, static_cast<std::size_t>(mesh.cells))
+                                                                       : plainArray<float>(d.name, d.values));
     for (const Array& array : arrays)
         if (array.elements != static_cast<std::size_t>(mesh.cells))
             throw Error(ErrorKind::internal, "cell data does not have one value for each cell",

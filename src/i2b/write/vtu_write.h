@@ -11,10 +11,11 @@
 
 namespace i2b {
 
-// One value for each cell, e.g. "nonOrthogonality" (degrees), "skewness", "volume" (m^3).
+// One value for each cell, e.g. "nonOrthogonality" (degrees), "skewness", "volume" (m^3), or for some of them.
 struct CellData {
     std::string name;
-    std::vector<float> values; // mesh.cells
+    std::vector<float> values; // mesh.cells, or as many as `cells`
+    const std::vector<std::int32_t>* cells = nullptr; // ascending: the cells that have a value; 0 elsewhere. Null: all
 };
 
 struct VtuWriteOptions {

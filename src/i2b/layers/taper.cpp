@@ -1,0 +1,50 @@
+#include "i2b/core/parallel.h"
+#include "i2b/layers/layer_stack.h"
+#include <array>
+
+namespace i2b {
+namespace {
+
+constexpr std::size_t chunk = 4096;
+
+// f(other) for every face that shares an edge with this one.
+template <class F>
+void forNeighbours(const FrontMesh& mesh, std::size_t face, const F& f) {
+    for (auto he : mesh.fh_range(FrontMesh::FaceHandle(static_cast<int>(face)))) {
+        const auto other = mesh.opposite_face_handle(he);
+        if (other.is_valid()) f(static_cast<std::size_t>(other.idx()));
+    }
+}
+
+} // namespace
+
+// Faces that hold a neighbour down are visited by rising count, so that each is lowered to its final count at once: the
+// work is in the faces beside a border alone.
+void taperCounts(const FrontMesh& mesh, std::vector<std::uint8_t>& counts) {
+    using Found = std::vector<std::uint32_t>;
+    std::vector<Found> found((counts.size() + chunk - 1) / chunk);
+    parallelChunks(counts.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+        for (std::size_t f = begin; f < end; ++f) {
+            bool holds = false;
+            forNeighbours(mesh, f, [&](std::size_t other) { holds = holds || counts[other] > counts[f] + 1; });
+            if (holds) found[c].push_back(static_cast<std::uint32_t>(f));
+        }
+    });
+    std::array<Found, 256> byCount;
+    for (const Found& some : found) {
+        for (std::uint32_t f : some) byCount[counts[f]].push_back(f);
+    }
+    for (std::size_t count = 0; count + 1 < byCount.size(); ++count) {
+        for (std::size_t i = 0; i < byCount[count].size(); ++i) {
+            const std::uint32_t f = byCount[count][i];
+            if (counts[f] != count) continue; // lowered since
+            forNeighbours(mesh, f, [&](std::size_t other) {
+                if (counts[other] <= count + 1) return;
+                counts[other] = static_cast<std::uint8_t>(count + 1);
+                byCount[count + 1].push_back(static_cast<std::uint32_t>(other));
+            });
+        }
+    }
+}
+
+} // namespace i2b
