@@ -44,10 +44,14 @@ void store(const Band& band, const std::vector<Vec3>& x, Front& front) {
     }
     front.movedPoints.clear();
     front.movedTo.clear();
+    front.movedSize.clear();
+    front.movedOutside.clear();
     for (std::size_t n = band.walls + band.fronts; n < band.movable; ++n) {
         if (x[n] == band.start[n]) continue;
         front.movedPoints.push_back(band.corePoint[n - band.walls]);
         front.movedTo.push_back(x[n]);
+        front.movedSize.push_back(static_cast<float>(band.h[n]));
+        front.movedOutside.push_back(band.outside[n]);
     }
 }
 
@@ -119,7 +123,8 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     for (const Snap& s : snaps) summary.snapped += s.kind != SnapKind::none;
     for (std::uint8_t a : active) summary.active += a;
     store(band, x, front);
-    if (options.features && getenv("INS")) summary.inserted = insertVertices(front, band, index, features, x, snaps);
+    if (options.features) summary.inserted = insertVertices(front, band, index, features, x, snaps);
+    summary.snaps = std::move(snaps);
     return summary;
 }
 

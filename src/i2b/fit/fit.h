@@ -23,6 +23,7 @@ struct FitSummary {
     std::size_t active = 0;       // nodes that the energy worked on
     std::size_t snapped = 0;      // wall nodes held to a feature
     std::size_t split = 0;        // front faces split along one
+    std::vector<Snap> snaps;      // per wall node: what it is held to
     std::size_t inserted = 0;     // vertices put where an edge crosses one
 };
 
@@ -38,6 +39,9 @@ struct WallTarget {
     Vec3 normal;        // unit: direction of the distance, or of the triangle where b is on it
     bool found = false;
 };
+// h, reach: m, smallest and largest edge of the cells around; outside: as in Front.
+WallTarget targetSeen(const SurfaceIndex& index, const Vec3& f, const Vec3& b, double h, double reach, std::uint8_t outside);
+// The same of a node of the band.
 WallTarget wallTarget(const SurfaceIndex& index, const Band& band, std::size_t wallNode, const Vec3& f, const Vec3& b);
 
 // Front nodes in narrow passages start behind a wall. Marks them in the band and gives valid positions with all of

@@ -123,10 +123,12 @@ void relaxVolume(const Band& band, const SurfaceIndex& index, const std::vector<
 } // namespace
 
 WallTarget wallTarget(const SurfaceIndex& index, const Band& band, std::size_t wall, const Vec3& front, const Vec3& b) {
+    return targetSeen(index, seenFront(index, band, wall, front), b, band.h[wall], band.reach[wall], band.outside[wall]);
+}
+
+WallTarget targetSeen(const SurfaceIndex& index, const Vec3& f, const Vec3& b, double h, double reach, std::uint8_t outside) {
     WallTarget target;
-    const Vec3 f = seenFront(index, band, wall, front);
-    const double h = band.h[wall], length = norm(f - b);
-    const std::uint8_t outside = band.outside[wall];
+    const double length = norm(f - b);
     ClosestPoint c;
     const double off = 1e-3 * h; // what lies nearer to b is its closest point's business
     const SegmentHit hit = length > off && outside == 0 ? index.firstHit(f, b, 1 - off / length + 1e-9) : SegmentHit{};
@@ -134,7 +136,7 @@ WallTarget wallTarget(const SurfaceIndex& index, const Band& band, std::size_t w
         c = {f + (b - f) * hit.t, 0, hit.triangle};
     } else {
         const Vec3 q = length > 0 ? b + withinSides(f - b, outside) * std::min(1.0, 0.1 * h / length) : b;
-        c = closestWithinSides(index, q, outside, 2 * band.reach[wall]);
+        c = closestWithinSides(index, q, outside, 2 * reach);
     }
     if (!c) return target;
     target.found = true;

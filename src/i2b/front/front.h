@@ -43,6 +43,8 @@ struct Front {
     // Core points behind the front that the fit has moved, by number.
     std::vector<std::int32_t> movedPoints;
     std::vector<Vec3> movedTo;                     // m
+    std::vector<float> movedSize;                  // m, smallest edge of the cells around
+    std::vector<std::uint8_t> movedOutside;        // as outside
 
     std::size_t firstInserted() const { return front.size() - inserted.size(); } // vertex
     // "" or the first fault: open edges away from the domain's sides, isolated vertices, sizes of arrays.

@@ -24,6 +24,10 @@ class MeshFaults {
     // After points have moved. seeds: cells among which every moved point has one that uses it.
     void update(const std::vector<std::int32_t>& movedPoints, const std::vector<std::int32_t>& seeds);
 
+    const CellMoments* moments() const { return moments_.data(); } // of all cells
+    const QualityLimits& limits() const { return limits_; }
+    std::int32_t thinFrom() const { return thinFrom_; }
+
     // Cells without a positive volume, or with a face pyramid that points the wrong way or is next to nothing.
     std::vector<std::int32_t> badCells() const;
     // Cells at both sides of the faces over the limits and cells over theirs: of each kind of fault those that come

@@ -12,10 +12,12 @@ constexpr int gentleRounds = 12;  // then the points of a bad cell go back whole
 constexpr int lastRound = 40;
 constexpr int qualityRounds = 14;
 constexpr double qualityStep = 0.2;
+constexpr int mendSweeps = 12;
+constexpr int pullSweeps = 3;
 
 QualityLimits strictLimits() { // a little inside those that the report judges by
     QualityLimits limits;
-    limits.nonOrthogonality = 68;
+    limits.nonOrthogonality = 64.5;
     limits.skewness = 3.8;
     limits.faceWeight = 0.055;
     limits.volumeRatio = 0.02;
@@ -212,18 +214,12 @@ void Retreat::restore(const std::vector<float>& beta) {
 
 } // namespace
 
-RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, const LayerStack& layers, double startThickness) {
-    RepairSummary summary;
-    const Rows cellFaces = buildCellFaces(mesh);
-    // Layers of a height that was asked for are thin on purpose: nodes off the wall would not mend them.
-    const std::int32_t thinFrom = layers.asHighAsCan() ? mesh.cells : mesh.cells - static_cast<std::int32_t>(layers.cells());
-    MeshFaults faults(mesh, cellFaces, strictLimits(), thinFrom);
-    std::vector<std::int32_t> bad = faults.badCells();
-    summary.badCells = static_cast<std::int64_t>(bad.size());
-    FaultCount least;
-    if (bad.empty() && faults.poorCells(least).empty()) return summary;
-    Nodes nodes(front, lattice, layers, startThickness);
+namespace {
+
+// Steps back until nothing is wrong, then for quality as long as it helps.
+void retreatFromFaults(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults, Nodes& nodes, RepairSummary& summary) {
     Retreat retreat(mesh, cellFaces, faults, nodes);
+    std::vector<std::int32_t> bad = faults.badCells();
     const auto makeValid = [&] {
         for (int round = 0; !bad.empty() && round < lastRound; ++round, ++summary.rounds) {
             retreat.step(bad, round < gentleRounds ? float(stepBack) : 1.0f);
@@ -231,16 +227,16 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, c
         }
     };
     makeValid();
+    FaultCount least;
     faults.poorCells(least);
-    summary.poorFaces = least.all;
     std::vector<float> best = nodes.beta;
     const auto returnToBest = [&] {
         if (best == nodes.beta) return;
         retreat.restore(best);
         bad = faults.badCells();
     };
-    // Retreat for quality as long as it helps; the best state counts. Severe faults first: what mends them may leave
-    // layers thin beside a large cell, which is the lesser evil.
+    // The best state counts. Severe faults first: what mends them may leave layers thin beside a large cell, which is the
+    // lesser evil.
     for (const bool severeOnly : {true, false}) {
         FaultCount count;
         std::vector<std::int32_t> poor = faults.poorCells(count, severeOnly);
@@ -255,10 +251,37 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, c
         }
         returnToBest();
     }
-    summary.poorRemaining = least.all;
-    nodes.store(front);
-    for (float b : nodes.beta) summary.retracted += b < 1;
     summary.remaining = static_cast<std::int64_t>(bad.size());
+}
+
+} // namespace
+
+RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, const LayerStack& layers, double startThickness,
+                     const WallGuide& guide) {
+    RepairSummary summary;
+    const Rows cellFaces = buildCellFaces(mesh);
+    // Layers of a height that was asked for are thin on purpose: nodes off the wall would not mend them.
+    const std::int32_t thinFrom = layers.asHighAsCan() ? mesh.cells : mesh.cells - static_cast<std::int32_t>(layers.cells());
+    MeshFaults faults(mesh, cellFaces, strictLimits(), thinFrom);
+    FaultCount poor;
+    faults.poorCells(poor);
+    summary.badCells = static_cast<std::int64_t>(faults.badCells().size());
+    summary.poorFaces = poor.all;
+    Optimiser optimiser(mesh, cellFaces, faults, front, layers, guide);
+    if (summary.badCells > 0 || summary.poorFaces > 0) {
+        summary.moves += optimiser.mend(mendSweeps);
+        faults.poorCells(poor);
+    }
+    if (poor.all > 0 || !faults.badCells().empty()) {
+        Nodes nodes(front, lattice, layers, startThickness);
+        retreatFromFaults(mesh, cellFaces, faults, nodes, summary);
+        nodes.store(front);
+        for (float b : nodes.beta) summary.retracted += b < 1;
+    }
+    if (summary.remaining > 0) return summary;
+    summary.moves += optimiser.pullIn(pullSweeps);
+    faults.poorCells(poor);
+    summary.poorRemaining = poor.all;
     return summary;
 }
 

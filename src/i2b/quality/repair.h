@@ -4,13 +4,14 @@
 // is left. The slope of the retreat is bounded, so that it ends smoothly. Then faces over the limits of quality get the
 // same, as far as it helps: a node that is a little off the wall is worth less than a mesh that passes its checks.
 #pragma once
-#include "i2b/assemble/assemble.h"
+#include "i2b/quality/optimise.h"
 #include <cstdint>
 
 namespace i2b {
 
 struct RepairSummary {
     int rounds = 0;
+    std::int64_t moves = 0;      // of single nodes to better places
     std::int64_t badCells = 0;   // at the beginning
     std::int64_t retracted = 0;  // points that stepped back
     std::int64_t remaining = 0;  // bad cells at the end; 0 unless the start itself is wrong
@@ -20,6 +21,7 @@ struct RepairSummary {
 };
 
 // startThickness: what buildFront() was given. Moves points of mesh, and front positions alike.
-RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, const LayerStack& layers, double startThickness);
+RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, const LayerStack& layers, double startThickness,
+                     const WallGuide& guide);
 
 } // namespace i2b

@@ -1,0 +1,118 @@
+#include "i2b/quality/cell_star.h"
+#include "i2b/quality/measures.h"
+#include <algorithm>
+#include <numbers>
+
+namespace i2b {
+namespace {
+
+using Index = std::size_t;
+constexpr double counts = 0.9;       // of a limit: what is better does not count
+constexpr double leastPyramid = 0.05; // cosine between a face's normal and the way to its centre from the cell's
+constexpr double wrong = 30;         // of a cell inside out
+
+void add(Badness& out, double share) {
+    out.worst = std::max(out.worst, share);
+    if (share > counts) out.sum += (share - counts) * (share - counts);
+}
+
+Index placeIn(const std::vector<std::int32_t>& sorted, std::int32_t value) {
+    const auto i = std::lower_bound(sorted.begin(), sorted.end(), value);
+    return i != sorted.end() && *i == value ? static_cast<Index>(i - sorted.begin()) : sorted.size();
+}
+
+} // namespace
+
+bool CellStar::uses(std::int32_t face) const {
+    const auto v = mesh_.face(face);
+    return std::any_of(v.begin(), v.end(), [&](std::int32_t p) { return placeIn(points_, p) < points_.size(); });
+}
+
+void CellStar::gather(const std::vector<std::int32_t>& points, const std::vector<std::int32_t>& from) {
+    points_ = points;
+    cells_.clear();
+    std::vector<std::int32_t> queue = from;
+    for (Index i = 0; i < queue.size(); ++i) {
+        const std::int32_t c = queue[i];
+        const auto at = std::lower_bound(cells_.begin(), cells_.end(), c);
+        if (at != cells_.end() && *at == c) continue;
+        bool touches = false;
+        for (std::int32_t f : cellFaces_[c]) {
+            if (!uses(f)) continue;
+            touches = true;
+            if (f < mesh_.internalFaces()) queue.push_back(mesh_.owner[Index(f)] == c ? mesh_.neighbour[Index(f)] : mesh_.owner[Index(f)]);
+        }
+        if (touches) cells_.insert(at, c);
+    }
+    faces_.clear();
+    for (std::int32_t c : cells_) {
+        for (std::int32_t f : cellFaces_[c]) faces_.push_back({f, -1, -1});
+    }
+    std::sort(faces_.begin(), faces_.end(), [](const Face& a, const Face& b) { return a.face < b.face; });
+    faces_.erase(std::unique(faces_.begin(), faces_.end(), [](const Face& a, const Face& b) { return a.face == b.face; }), faces_.end());
+    const auto inside = [&](std::int32_t cell) {
+        const Index i = placeIn(cells_, cell);
+        return i < cells_.size() ? static_cast<std::int32_t>(i) : -1;
+    };
+    for (Face& f : faces_) {
+        f.owner = inside(mesh_.owner[Index(f.face)]);
+        if (f.face < mesh_.internalFaces()) f.neighbour = inside(mesh_.neighbour[Index(f.face)]);
+    }
+    faceOf_.clear(), firstFace_.assign(1, 0);
+    for (std::int32_t c : cells_) {
+        for (std::int32_t f : cellFaces_[c]) {
+            const auto at = std::lower_bound(faces_.begin(), faces_.end(), f, [](const Face& a, std::int32_t b) { return a.face < b; });
+            faceOf_.push_back(static_cast<std::uint32_t>(at - faces_.begin()));
+        }
+        firstFace_.push_back(static_cast<std::uint32_t>(faceOf_.size()));
+    }
+    shapes_.resize(faces_.size()), own_.resize(cells_.size());
+}
+
+void CellStar::judgeCell(Index i, Badness& out) {
+    const std::span<const std::int32_t> faces = cellFaces_[cells_[i]];
+    row_.resize(faces.size());
+    for (Index k = 0; k < faces.size(); ++k) row_[k] = shapes_[faceOf_[firstFace_[i] + k]];
+    const CellMoments m = own_[i] = measureCell(mesh_, faces, row_, cells_[i]);
+    if (!(m.volume > 0)) add(out, wrong);
+    for (Index k = 0; k < faces.size(); ++k) {
+        const Vec3 arm = row_[k].centre - m.centre;
+        const double sign = mesh_.owner[Index(faces[k])] == cells_[i] ? 1 : -1, size = norm(row_[k].area) * norm(arm);
+        const double cosine = size > 0 ? sign * dot(row_[k].area, arm) / size : -1;
+        if (cosine < leastPyramid) add(out, 1 + (leastPyramid - cosine) / leastPyramid);
+    }
+    if (cells_[i] >= thinFrom_) return;
+    const double determinant = cellDeterminant(mesh_, faces, row_, Directions());
+    add(out, std::min(wrong, limits_.determinant / std::max(determinant, 1e-300)));
+}
+
+void CellStar::judgeFace(const Face& face, const FaceShape& shape, Badness& out) const {
+    const auto momentsOf = [&](std::int32_t place, std::int32_t cell) -> const CellMoments& {
+        return place >= 0 ? own_[Index(place)] : moments_[Index(cell)];
+    };
+    const std::int32_t owner = mesh_.owner[Index(face.face)];
+    const CellMoments& own = momentsOf(face.owner, owner);
+    if (face.face >= mesh_.internalFaces()) {
+        add(out, std::min(wrong, faceSkewness(mesh_, face.face, shape, own.centre, nullptr, counts * limits_.skewness) / limits_.skewness));
+        return;
+    }
+    const std::int32_t neighbour = mesh_.neighbour[Index(face.face)];
+    const CellMoments& nei = momentsOf(face.neighbour, neighbour);
+    const PairValues values = pairValues(shape, own, nei);
+    const double limit = 1 - std::cos(limits_.nonOrthogonality * std::numbers::pi / 180);
+    add(out, (1 - values.ortho) / limit);
+    add(out, std::min(wrong, faceSkewness(mesh_, face.face, shape, own.centre, &nei.centre, counts * limits_.skewness) / limits_.skewness));
+    if (owner >= thinFrom_ && neighbour >= thinFrom_) return;
+    add(out, std::min(wrong, limits_.faceWeight / std::max(values.weight, 1e-300)));
+    add(out, std::min(wrong, limits_.volumeRatio / std::max(values.ratio, 1e-300)));
+}
+
+Badness CellStar::judge() {
+    for (Index i = 0; i < faces_.size(); ++i) shapes_[i] = measureFace(mesh_, faces_[i].face);
+    Badness out;
+    for (Index i = 0; i < cells_.size(); ++i) judgeCell(i, out);
+    for (Index i = 0; i < faces_.size(); ++i) judgeFace(faces_[i], shapes_[i], out);
+    return out;
+}
+
+} // namespace i2b

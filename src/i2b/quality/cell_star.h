@@ -1,0 +1,47 @@
+// The cells around a node that may move, judged as checkMesh judges them: what the optimiser asks again and again.
+#pragma once
+#include "i2b/quality/mesh_geometry.h"
+#include "i2b/quality/quality_report.h"
+
+namespace i2b {
+
+// How bad faces and cells are: sums over those that are near or over the limits, each measure taken as a share of its
+// limit (1: at the limit).
+struct Badness {
+    double sum = 0;   // of the squares of what is over 0.9
+    double worst = 0;
+};
+
+class CellStar {
+  public:
+    // Keeps references. moments: of all cells, as they are now; those of the star's own cells are worked out anew.
+    CellStar(const PolyMesh& mesh, const Rows& cellFaces, const CellMoments* moments, const QualityLimits& limits, std::int32_t thinFrom)
+        : mesh_(mesh), cellFaces_(cellFaces), moments_(moments), limits_(limits), thinFrom_(thinFrom) {}
+
+    // All cells that use one of the points (sorted); from: one that does for each group of points that hang together.
+    void gather(const std::vector<std::int32_t>& points, const std::vector<std::int32_t>& from);
+    const std::vector<std::int32_t>& cells() const { return cells_; } // ascending
+    // With the mesh's points as they are now.
+    Badness judge();
+
+  private:
+    struct Face {
+        std::int32_t face, owner, neighbour; // cells: place in cells_, or -1
+    };
+    bool uses(std::int32_t face) const;
+    void judgeCell(std::size_t i, Badness& out);
+    void judgeFace(const Face& face, const FaceShape& shape, Badness& out) const;
+
+    const PolyMesh& mesh_;
+    const Rows& cellFaces_;
+    const CellMoments* moments_;
+    QualityLimits limits_;
+    std::int32_t thinFrom_;
+    std::vector<std::int32_t> points_, cells_;
+    std::vector<Face> faces_;                          // ascending
+    std::vector<std::uint32_t> faceOf_, firstFace_;    // the faces of each cell, places in faces_
+    std::vector<FaceShape> shapes_, row_;
+    std::vector<CellMoments> own_;
+};
+
+} // namespace i2b

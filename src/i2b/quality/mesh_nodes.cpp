@@ -1,0 +1,122 @@
+#include "i2b/quality/mesh_nodes.h"
+#include <algorithm>
+#include <tbb/parallel_sort.h>
+
+namespace i2b {
+namespace {
+using Index = std::size_t;
+}
+
+MeshNodes::MeshNodes(Front& front, const LayerStack& layers)
+    : front_(front), layers_(layers), core_(front.corePoints + static_cast<std::int32_t>(front.inserted.size())) {
+    std::vector<Fan> fans(front.firstInserted());
+    for (Index v = 0; v < fans.size(); ++v) fans[v] = {front.corePoint[v], static_cast<std::int32_t>(v)};
+    tbb::parallel_sort(fans);
+    points_.reserve(fans.size()), vertices_.reserve(fans.size());
+    for (const Fan& f : fans) points_.push_back(f.point), vertices_.push_back(f.vertex);
+    for (Index i = 0; i < front.inserted.size(); ++i) {
+        for (std::int32_t end : front.inserted[i].ends) children_.push_back({end, static_cast<std::int32_t>(front.firstInserted() + i)});
+    }
+    std::sort(children_.begin(), children_.end());
+    moved_.reserve(front.movedPoints.size());
+    for (Index i = 0; i < front.movedPoints.size(); ++i) moved_.emplace_back(front.movedPoints[i], static_cast<std::int32_t>(i));
+    tbb::parallel_sort(moved_);
+}
+
+std::pair<const std::int32_t*, const std::int32_t*> MeshNodes::fansOf(std::int32_t corePoint) const {
+    const auto [first, last] = std::equal_range(points_.begin(), points_.end(), corePoint);
+    return {vertices_.data() + (first - points_.begin()), vertices_.data() + (last - points_.begin())};
+}
+
+std::int32_t MeshNodes::movedPlace(std::int32_t point) const {
+    const auto at = std::lower_bound(moved_.begin(), moved_.end(), std::pair{point, std::int32_t(0)});
+    return at != moved_.end() && at->first == point ? at->second : -1;
+}
+
+void MeshNodes::nodesOf(std::int32_t point, std::vector<MeshNode>& out) const {
+    const auto ends = [&](std::int32_t vertex, MeshNode::Kind kind) { // of an inserted vertex its edge's
+        const auto first = static_cast<std::int32_t>(front_.firstInserted());
+        if (vertex < first) {
+            out.push_back({kind, kind == MeshNode::wall ? vertex : front_.corePoint[Index(vertex)]});
+            return;
+        }
+        for (std::int32_t end : front_.inserted[Index(vertex - first)].ends) out.push_back({kind, kind == MeshNode::wall ? end : front_.corePoint[Index(end)]});
+    };
+    if (point >= core_) {
+        const auto vertex = static_cast<std::int32_t>(layers_.vertexOfPoint(static_cast<Index>(point - core_)));
+        ends(vertex, MeshNode::wall);
+        ends(vertex, MeshNode::front);
+    } else if (point >= front_.corePoints) {
+        ends(static_cast<std::int32_t>(front_.firstInserted()) + point - front_.corePoints, MeshNode::front);
+    } else if (const auto [first, last] = fansOf(point); first != last) {
+        out.push_back({MeshNode::front, point});
+    } else if (const std::int32_t i = movedPlace(point); i >= 0) {
+        out.push_back({MeshNode::core, i});
+    }
+}
+
+Vec3 MeshNodes::place(const MeshNode& node) const {
+    if (node.kind == MeshNode::core) return front_.movedTo[Index(node.id)];
+    if (node.kind == MeshNode::wall) return wallOf(node.id);
+    return front_.front[Index(*fansOf(node.id).first)];
+}
+
+double MeshNodes::h(const MeshNode& node) const {
+    if (node.kind == MeshNode::core) return front_.movedSize[Index(node.id)];
+    return front_.h[Index(node.kind == MeshNode::wall ? node.id : *fansOf(node.id).first)];
+}
+
+std::uint8_t MeshNodes::outside(const MeshNode& node) const {
+    if (node.kind == MeshNode::core) return front_.movedOutside[Index(node.id)];
+    return front_.outside[Index(node.kind == MeshNode::wall ? node.id : *fansOf(node.id).first)];
+}
+
+void MeshNodes::stack(std::int32_t vertex, const Vec3& front, const Vec3& wall, Moved& out) const {
+    std::array<Vec3, maxLayers + 1> points;
+    placeLayers(layers_, Index(vertex), front, wall, points.data());
+    const auto first = core_ + static_cast<std::int32_t>(layers_.pointOffset(Index(vertex)));
+    for (int k = 0; k < layers_.pointsOf(Index(vertex)); ++k) out.emplace_back(first + k, points[Index(k)]);
+}
+
+void MeshNodes::follow(const MeshNode& node, const Vec3& to, Moved& out) const {
+    if (node.kind == MeshNode::wall) return stack(node.id, front_.front[Index(node.id)], to, out);
+    if (node.kind == MeshNode::core) {
+        out.emplace_back(front_.movedPoints[Index(node.id)], to);
+        return;
+    }
+    out.emplace_back(node.id, to);
+    const auto [first, last] = fansOf(node.id);
+    for (const std::int32_t* v = first; v != last; ++v) {
+        stack(*v, to, wallOf(*v), out);
+        auto child = std::lower_bound(children_.begin(), children_.end(), Child{*v, 0});
+        for (; child != children_.end() && child->parent == *v; ++child) {
+            const Front::Inserted& i = front_.inserted[Index(child->vertex) - front_.firstInserted()];
+            const bool atFirst = i.ends[0] == *v;
+            const Vec3 other = front_.front[Index(i.ends[atFirst ? 1 : 0])];
+            const Vec3 place = atFirst ? to + (other - to) * i.t : other + (to - other) * i.t;
+            out.emplace_back(front_.corePoint[Index(child->vertex)], place);
+            stack(child->vertex, place, wallOf(child->vertex), out);
+        }
+    }
+}
+
+void MeshNodes::moveTo(const MeshNode& node, const Vec3& to) {
+    if (node.kind == MeshNode::core) {
+        front_.movedTo[Index(node.id)] = to;
+    } else if (node.kind == MeshNode::wall) {
+        front_.mesh.set_point(FrontMesh::VertexHandle(node.id), {to.x, to.y, to.z});
+    } else {
+        const auto [first, last] = fansOf(node.id);
+        for (const std::int32_t* v = first; v != last; ++v) {
+            front_.front[Index(*v)] = to;
+            auto child = std::lower_bound(children_.begin(), children_.end(), Child{*v, 0});
+            for (; child != children_.end() && child->parent == *v; ++child) {
+                const Front::Inserted& i = front_.inserted[Index(child->vertex) - front_.firstInserted()];
+                const Vec3 a = front_.front[Index(i.ends[0])];
+                front_.front[Index(child->vertex)] = a + (front_.front[Index(i.ends[1])] - a) * i.t;
+            }
+        }
+    }
+}
+
+} // namespace i2b

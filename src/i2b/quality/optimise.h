@@ -1,0 +1,55 @@
+// Moves the nodes of poor cells, one at a time, so that what checkMesh measures of the cells around gets better: each
+// move lowers the sum of what is near or over the limits and never raises the worst of it. Wall nodes glide on the
+// geometry, snapped ones on their line. Nodes whose cells have no face in common move at once, colour by colour; the
+// result does not depend on the number of threads.
+#pragma once
+#include "i2b/fit/fit.h"
+#include "i2b/quality/mesh_faults.h"
+#include "i2b/quality/mesh_nodes.h"
+
+namespace i2b {
+
+// What the wall nodes belong to.
+struct WallGuide {
+    const SurfaceIndex& index;
+    const FeatureIndex& features;
+    const std::vector<Snap>& snaps; // per vertex of the front that the lattice has
+};
+
+class Optimiser {
+  public:
+    // Keeps references. faults: as the mesh is now; kept up to date.
+    Optimiser(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults, Front& front, const LayerStack& layers, const WallGuide& guide);
+
+    // The nodes of poor and wrong cells, until nothing gets better. Gives how many moves were made.
+    std::int64_t mend(int sweeps);
+    // Wall nodes off the geometry, the whole, half or a quarter of their way, as far as no limit is broken.
+    std::int64_t pullIn(int sweeps);
+
+  private:
+    struct Task {
+        MeshNode node;
+        std::int32_t cell = -1;             // one that uses a point of the node
+        std::vector<std::int32_t> cells;    // all that do, ascending
+    };
+    struct Worker;
+    std::vector<Task> tasksOf(const std::vector<std::int32_t>& cells) const;
+    std::vector<Task> tasksOff() const;
+    std::vector<std::vector<std::uint32_t>> colour(const std::vector<Task>& tasks) const;
+    template <class Move>
+    std::int64_t sweep(std::vector<Task>& tasks, const Move& move);
+    bool isFree(const MeshNode& node, const Vec3& to) const;
+    Vec3 onWall(const MeshNode& node, const Vec3& from, const Vec3& to) const;
+    bool targetOf(std::int32_t vertex, Vec3& target) const;
+    bool mendNode(const Task& task, Worker& worker);
+    bool pullNode(const Task& task, Worker& worker);
+
+    PolyMesh& mesh_;
+    const Rows& cellFaces_;
+    MeshFaults& faults_;
+    Front& front_;
+    WallGuide guide_;
+    MeshNodes nodes_;
+};
+
+} // namespace i2b
