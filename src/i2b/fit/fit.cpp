@@ -123,7 +123,17 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     for (const Snap& s : snaps) summary.snapped += s.kind != SnapKind::none;
     for (std::uint8_t a : active) summary.active += a;
     store(band, x, front);
-    if (options.features) summary.inserted = insertVertices(front, band, index, features, x, snaps);
+    if (options.features) {
+        summary.wishes = snaps;
+        snapToFeatures(band, front, index, features, x, summary.wishes);
+        summary.inserted = insertVertices(front, band, index, features, x, snaps);
+        for (std::size_t n = 0; n < band.walls; ++n) {
+            if (snaps[n].kind != SnapKind::none) summary.wishes[n] = {};
+        }
+        for (const Front::Inserted& i : front.inserted) {
+            for (std::int32_t end : i.ends) summary.wishes[static_cast<std::size_t>(end)] = {};
+        }
+    }
     summary.snaps = std::move(snaps);
     return summary;
 }

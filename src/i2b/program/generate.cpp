@@ -117,7 +117,7 @@ MeshResult generate(const Options& options, Context& context) {
         [](const FeatureGraph& f) { return f.edges.size(); });
     std::vector<std::string>& notes = out.cartesian->notes.messages;
     notes.insert(notes.end(), features.notes.begin(), features.notes.end());
-    const FitSummary fitted = stage(
+    FitSummary fitted = stage(
         context, "fit",
         [&] { return fitFront(front, *lattice, *c.index, features, options.fit, context); },
         [](const FitSummary& s) { return s.wallNodes; });
@@ -128,7 +128,7 @@ MeshResult generate(const Options& options, Context& context) {
         context, "layers", [&] { return makeLayers(front, plans); }, [](const LayerStack& l) { return l.cells(); });
     out.mesh = stage(
         context, "assemble", [&] { return assemble({*lattice, c.kept, front, layers, c.surface.parts}); }, [](const PolyMesh& m) { return m.cells; });
-    const RepairSummary repaired = stage(context, "repair", [&] { return repair(out.mesh, front, *lattice, layers, startThickness, {*c.index, FeatureIndex(features), fitted.snaps}); },
+    const RepairSummary repaired = stage(context, "repair", [&] { return repair(out.mesh, front, *lattice, layers, startThickness, {*c.index, FeatureIndex(features), fitted.snaps, fitted.wishes}); },
                                          [](const RepairSummary& r) { return r.retracted; });
     if (repaired.remaining > 0) {
         throw Error(ErrorKind::internal, fmt::format("{} cells could not be made valid", repaired.remaining), "", "please report the case");

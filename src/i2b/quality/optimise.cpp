@@ -267,13 +267,19 @@ std::vector<Optimiser::Task> Optimiser::tasksOff() const {
         Vec3 target;
         off[v] = targetOf(static_cast<std::int32_t>(v), target) && norm(target - Vec3{p[0], p[1], p[2]}) > offWall * front_.h[v];
     });
+    return wallTasks(off);
+}
+
+// Of the wall vertices wanted, each with a cell at the wall.
+std::vector<Optimiser::Task> Optimiser::wallTasks(const std::vector<std::uint8_t>& wanted) const {
+    const Index walls = wanted.size();
     std::vector<std::int32_t> cellOf(walls, -1); // a wall cell of each
     const auto first = static_cast<std::int32_t>(mesh_.neighbour.size());
     for (std::int32_t f = first; f < mesh_.faces(); ++f) {
         for (const std::int32_t p : mesh_.face(f)) {
             if (p < nodes_.corePoints()) continue;
             const Index v = nodes_.vertexOf(p);
-            if (v < walls && off[v] && cellOf[v] < 0) cellOf[v] = mesh_.owner[Index(f)];
+            if (v < walls && wanted[v] && cellOf[v] < 0) cellOf[v] = mesh_.owner[Index(f)];
         }
     }
     std::vector<Task> tasks;
@@ -281,6 +287,28 @@ std::vector<Optimiser::Task> Optimiser::tasksOff() const {
         if (cellOf[v] >= 0) tasks.push_back({{MeshNode::wall, static_cast<std::int32_t>(v)}, cellOf[v], {}});
     }
     return tasks;
+}
+
+bool Optimiser::snapNode(const Task& task, Worker& worker) {
+    const auto v = Index(task.node.id);
+    const Snap& wish = guide_.wishes[v];
+    if (guide_.snaps[v].kind != SnapKind::none) return false;
+    worker.begin(task);
+    const Vec3 from = worker.from, to = snapLine(guide_.index, guide_.features, wish, from, front_.h[v]).point;
+    const Badness before = worker.at(from);
+    const bool there = worker.at(to).worst <= std::max(nearLimit, before.worst) && isFree(task.node, to);
+    worker.end(there ? to : from);
+    if (there) guide_.snaps[v] = wish;
+    return there;
+}
+
+std::int64_t Optimiser::snapWished(int sweeps) {
+    std::vector<std::uint8_t> wanted(guide_.wishes.size());
+    for (Index v = 0; v < wanted.size(); ++v) wanted[v] = guide_.wishes[v].kind != SnapKind::none;
+    std::vector<Task> tasks = wallTasks(wanted);
+    std::int64_t moves = 0;
+    for (int i = 0; i < sweeps && !tasks.empty(); ++i) moves += sweep(tasks, [&](const Task& t, Worker& w) { return snapNode(t, w); });
+    return moves;
 }
 
 std::int64_t Optimiser::pullIn(int sweeps) {

@@ -13,7 +13,8 @@ namespace i2b {
 struct WallGuide {
     const SurfaceIndex& index;
     const FeatureIndex& features;
-    const std::vector<Snap>& snaps; // per vertex of the front that the lattice has
+    std::vector<Snap>& snaps;        // per vertex of the front that the lattice has
+    const std::vector<Snap>& wishes; // the same: features that others should be brought to, if that can be; or none
 };
 
 class Optimiser {
@@ -23,6 +24,8 @@ class Optimiser {
 
     // The nodes of poor and wrong cells, until nothing gets better. Gives how many moves were made.
     std::int64_t mend(int sweeps);
+    // Nodes to the features that they should be on; those that get there are held to them.
+    std::int64_t snapWished(int sweeps);
     // Wall nodes off the geometry, the whole, half or a quarter of their way, as far as no limit is broken.
     std::int64_t pullIn(int sweeps);
 
@@ -43,6 +46,8 @@ class Optimiser {
     bool targetOf(std::int32_t vertex, Vec3& target) const;
     bool mendNode(const Task& task, Worker& worker);
     bool pullNode(const Task& task, Worker& worker);
+    bool snapNode(const Task& task, Worker& worker);
+    std::vector<Task> wallTasks(const std::vector<std::uint8_t>& wanted) const;
 
     PolyMesh& mesh_;
     const Rows& cellFaces_;

@@ -13,6 +13,7 @@ constexpr int lastRound = 40;
 constexpr int qualityRounds = 14;
 constexpr double qualityStep = 0.2;
 constexpr int mendSweeps = 12;
+constexpr int wishSweeps = 2;
 constexpr int pullSweeps = 3;
 
 QualityLimits strictLimits() { // a little inside those that the report judges by
@@ -279,6 +280,7 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, c
         for (float b : nodes.beta) summary.retracted += b < 1;
     }
     if (summary.remaining > 0) return summary;
+    summary.moves += optimiser.snapWished(wishSweeps);
     summary.moves += optimiser.pullIn(pullSweeps);
     faults.poorCells(poor);
     summary.poorRemaining = poor.all;
