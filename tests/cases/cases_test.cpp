@@ -25,7 +25,7 @@ struct Case {
     const char* options;
 };
 
-const std::array<Case, 9> cases{{
+const std::array<Case, 11> cases{{
     {"Engine2Cyl", nullptr, "shared/engine-2cyl.obj.gz", "--scale 0.001 --size 0.004"},
     {"MotorBike", nullptr, "openfoam/motorBike.obj.gz", "--size 0.02 --box -5 -4 0 15 4 8 --max-size 1"},
     {"DrivAer", nullptr, "shared/drivaer-body.obj.gz shared/drivaer-frontWheels.obj.gz shared/drivaer-rearWheels.obj.gz",
@@ -41,6 +41,13 @@ const std::array<Case, 9> cases{{
     {"Engine", "engine", nullptr, "--size 0.012"},
     {"EngineJacket", "engine", nullptr, "--size 0.004 --seed 0.152 0.053 0.40"},
     {"Missile", "missile", nullptr, "--size 0.02 --layers 2"},
+    {"EngineLayersByPart", "engine", nullptr,
+     "--size 0.012 --layers 4 --first-layer 0.0005 --growth 1.2 --part-layers '.*head.*=none' --part-layers 'exhaust.*=2,first=0.001' "
+     "--part-layers 'oil_pan=6'"},
+    {"DrivAerHalfLayersByPart", nullptr,
+     "shared/drivaer-body.obj.gz shared/drivaer-frontWheels.obj.gz shared/drivaer-rearWheels.obj.gz",
+     "--size 0.0625 --box -10 0 0 30 5 8 --max-size 1 --layers 5 --y-plus 100 --velocity 40 --viscosity 1.5e-5 --length 4.6 "
+     "--part-layers '.*Wheels=2'"},
 }};
 
 std::string textOf(const fs::path& path) {

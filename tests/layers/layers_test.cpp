@@ -1,33 +1,54 @@
-// Proves: layer heights fall towards the wall by the growth ratio, or meet the first height asked for where
-// there is room, and always fill the way from front to wall.
+// Proves: layer heights fall towards the wall by the growth ratio and fill the way from front to wall, or are as asked
+// where there is room; counts differ by one at most between neighbours and are the same on any number of threads; the
+// report says what was reached and why not more.
 #include "carve/kept_checks.h"
+#include "i2b/layers/layer_report.h"
 #include "i2b/layers/layer_stack.h"
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
+#include <numeric>
+#include <tbb/global_control.h>
 
 namespace i2b::test {
 namespace {
 
+// Parts by octants around the middle, so that their borders run across faces of all directions.
 struct Sample {
     Sample()
         : carved(3, {5, 6, 4}, 2, 1, 0.1), lattice(carved.grid, carved.kept),
-          front(buildFront(lattice, 0.07)) {}
-    double room(std::size_t v) const {
-        const auto& p = front.mesh.point(FrontMesh::VertexHandle(static_cast<int>(v)));
-        return norm(Vec3{p[0], p[1], p[2]} - front.front[v]);
+          front(buildFront(lattice, 0.07)) {
+        Box box;
+        for (const Vec3& p : front.front) box.add(p);
+        for (std::size_t f = 0; f < faces(); ++f) {
+            const auto v = static_cast<std::size_t>(front.mesh.fv_begin(FrontMesh::FaceHandle(static_cast<int>(f)))->idx());
+            const Vec3 d = front.front[v] - box.centre();
+            front.part[f] = (d.x > 0) + 2 * (d.y > 0);
+        }
     }
+    std::size_t faces() const { return front.ownerCell.size(); }
     // Heights of vertex v's layers, front to wall.
     std::vector<double> heights(const LayerStack& s, std::size_t v) const {
+        std::vector<double> z(static_cast<std::size_t>(s.pointsOf(v)));
+        const double room = roomAt(front, v);
+        s.heights(v, room, z.data());
         std::vector<double> h;
-        double below = 0;
-        for (int k = 0; k < s.count; ++k) {
-            h.push_back((double(s.fraction(v, k)) - below) * room(v));
-            below = double(s.fraction(v, k));
-        }
+        for (std::size_t k = 0; k < z.size(); ++k) h.push_back((k == 0 ? room : z[k - 1]) - z[k]);
         return h;
+    }
+    // Its n layers at the wall, from there.
+    std::vector<double> fromWall(const LayerStack& s, std::size_t v) const {
+        std::vector<double> h = heights(s, v);
+        std::reverse(h.begin(), h.end());
+        return h;
+    }
+    double leastRoom() const {
+        double least = roomAt(front, 0);
+        for (std::size_t v = 0; v < front.front.size(); ++v) least = std::min(least, roomAt(front, v));
+        return least;
     }
     CarvedAtRandom carved;
     LatticeMesh lattice;
     Front front;
+    std::vector<Part> parts{{"a", "", 1}, {"b", "", 1}, {"c", "", 1}, {"d", "", 1}};
 };
 
 LayerOptions options(int count, double growth, double first = 0) {
@@ -36,65 +57,172 @@ LayerOptions options(int count, double growth, double first = 0) {
     return o;
 }
 
+LayerReport reportOf(const Sample& s, const LayerStack& stack, int requested) {
+    return summarize(measureLayers(s.front, stack), s.front, s.parts, requested);
+}
+
 TEST(Layers, GrowByTheRatio) {
     const Sample s;
     for (int count : {1, 2, 5, 12}) {
         for (double growth : {1.0, 1.2, 1.5}) {
             const LayerStack stack = makeLayers(s.front, options(count, growth));
-            ASSERT_EQ(stack.validate(), "");
-            ASSERT_EQ(stack.fractions.size(), s.front.front.size() * static_cast<std::size_t>(count));
-            EXPECT_EQ(stack.requested, count);
-            EXPECT_EQ(stack.meanCount, count);
-            EXPECT_EQ(stack.facesCovered, 1);
-            double first = 0;
+            ASSERT_EQ(stack.validate(s.front), "");
+            ASSERT_TRUE(stack.uniform());
+            ASSERT_EQ(stack.points(), s.front.front.size() * static_cast<std::size_t>(count));
             for (std::size_t v = 0; v < s.front.front.size(); ++v) {
                 const std::vector<double> h = s.heights(stack, v);
-                double sum = 0;
-                for (std::size_t k = 0; k < h.size(); ++k) {
-                    sum += h[k];
-                    EXPECT_NEAR(k > 0 ? h[k - 1] / h[k] : growth, growth, 1e-3); // fractions are floats
-                }
-                EXPECT_NEAR(sum, s.room(v), 1e-6 * s.room(v));
-                first += h.back() / static_cast<double>(s.front.front.size());
+                for (std::size_t k = 1; k < h.size(); ++k) EXPECT_NEAR(h[k - 1] / h[k], growth, 1e-9);
+                EXPECT_NEAR(std::accumulate(h.begin(), h.end(), 0.0), roomAt(s.front, v), 1e-12 * roomAt(s.front, v));
             }
-            EXPECT_NEAR(stack.meanFirstHeight, first, 1e-5 * first);
+            const LayerReport report = reportOf(s, stack, count);
+            EXPECT_EQ(report.requested, count);
+            EXPECT_EQ(report.meanCount, count);
+            EXPECT_EQ(report.facesCoveredFraction, 1);
+            EXPECT_NEAR(report.thicknessFraction, 1, 1e-6);
         }
     }
 }
 
-TEST(Layers, FirstHeightIsMetWhereThereIsRoom) {
+// Given heights are met to the last digit, and a cell over them takes the rest.
+TEST(Layers, HeightsAreMetWhereThereIsRoom) {
     const Sample s;
-    double least = s.room(0), most = s.room(0);
-    for (std::size_t v = 0; v < s.front.front.size(); ++v)
-        least = std::min(least, s.room(v)), most = std::max(most, s.room(v));
-    const double first = least / 8; // 5 layers fill the room with ratios between 1/2 and 4 everywhere
-    ASSERT_LT(most, 300 * first);
+    const double first = s.leastRoom() / 20; // 5 layers are 7.44 times as high, and half of the last one is 1.04
     const LayerStack stack = makeLayers(s.front, options(5, 1.2, first));
-    ASSERT_EQ(stack.validate(), "");
+    ASSERT_EQ(stack.validate(s.front), "");
+    EXPECT_TRUE(stack.uniform()); // so all have the further cell
+    EXPECT_EQ(stack.count, 6);
     for (std::size_t v = 0; v < s.front.front.size(); ++v) {
-        const std::vector<double> h = s.heights(stack, v);
-        EXPECT_NEAR(h.back(), first, 1e-4 * s.room(v));
-        for (std::size_t k = 2; k < h.size(); ++k) EXPECT_NEAR(h[k - 1] / h[k], h[0] / h[1], 1e-2);
+        const std::vector<double> h = s.fromWall(stack, v);
+        for (std::size_t k = 0; k < 5; ++k) EXPECT_NEAR(h[k], first * std::pow(1.2, k), 1e-12);
+    }
+    const LayerReport report = reportOf(s, stack, 5);
+    EXPECT_EQ(report.meanCount, 5);
+    EXPECT_NEAR(report.meanFirst, first, 1e-6 * first);
+    EXPECT_NEAR(report.minFirst, first, 1e-6 * first);
+    EXPECT_NEAR(report.maxFirst, first, 1e-6 * first);
+    EXPECT_NEAR(report.thicknessFraction, 1, 1e-6);
+    for (const LayerRow& row : report.parts) EXPECT_EQ(row.causes[0], row.faces);
+}
+
+// More than fits is squeezed, and the report says how much of it was reached, and why not more.
+TEST(Layers, WhatDoesNotFitIsReported) {
+    const Sample s;
+    const LayerStack stack = makeLayers(s.front, options(3, 1.2, 10 * s.leastRoom()));
+    EXPECT_EQ(stack.validate(s.front), "");
+    LayerReport report = reportOf(s, stack, 3);
+    EXPECT_EQ(report.meanCount, 3);
+    EXPECT_GT(report.thicknessFraction, 0);
+    EXPECT_LT(report.thicknessFraction, 0.2);
+    for (const LayerRow& row : report.parts) EXPECT_EQ(row.causes[std::size_t(LayerCause::room)], row.faces);
+
+    report = reportOf(s, makeLayers(s.front, options(3, 3, s.leastRoom() / 4)), 3); // 13 quarters: less growth helps
+    std::int64_t compressed = 0;
+    for (const LayerRow& row : report.parts) compressed += row.causes[std::size_t(LayerCause::compressed)];
+    EXPECT_GT(compressed, 0);
+    EXPECT_NEAR(report.minFirst, s.leastRoom() / 4, 1e-6);
+}
+
+// Heights in cell sizes follow the cells, which are of two levels here.
+TEST(Layers, RelativeHeightsFollowTheCells) {
+    const Sample s;
+    LayerOptions o = options(2, 1.5, 0.002);
+    o.unit = LayerUnit::cell;
+    const LayerStack stack = makeLayers(s.front, o);
+    double least = 1e300, most = 0;
+    for (std::size_t v = 0; v < s.front.front.size(); ++v) {
+        const double first = s.fromWall(stack, v)[0];
+        EXPECT_NEAR(first, 0.002 * s.front.h[v], 1e-6 * first);
+        least = std::min(least, first), most = std::max(most, first);
+    }
+    EXPECT_GT(most, 1.9 * least);
+}
+
+// Each part has its own count, none included; counts go from one to the next in steps of one, no lower than they must be;
+// the heights at the wall are kept throughout.
+TEST(Layers, PartsHaveTheirOwnCounts) {
+    const Sample s;
+    const double first = s.leastRoom() / 40;
+    LayerOptions o = options(6, 1.1, first);
+    o.parts = {{"[bc]", 2}, {"c", 0}, {"nobody", 3}};
+    const WallPlans plans = plansOf(o, s.parts);
+    ASSERT_EQ(plans.notes.size(), 1u);
+    EXPECT_THAT(plans.notes[0], testing::HasSubstr("nobody"));
+    const LayerStack stack = makeLayers(s.front, plans);
+    ASSERT_EQ(stack.validate(s.front), "");
+    ASSERT_FALSE(stack.uniform());
+    const std::array wanted{7, 3, 1, 7}; // with the further cell
+    std::array<int, 8> seen{};
+    for (std::size_t f = 0; f < s.faces(); ++f) {
+        const int cells = stack.cellsOf(f), asked = wanted[static_cast<std::size_t>(s.front.part[f])];
+        ++seen[static_cast<std::size_t>(cells)];
+        EXPECT_LE(cells, asked);
+        if (cells == asked) continue;
+        int least = 99; // lower than asked only for the sake of a neighbour
+        for (auto he : s.front.mesh.fh_range(FrontMesh::FaceHandle(static_cast<int>(f)))) {
+            const auto other = s.front.mesh.opposite_face_handle(he);
+            if (other.is_valid()) least = std::min(least, stack.cellsOf(static_cast<std::size_t>(other.idx())));
+        }
+        EXPECT_EQ(cells, least + 1);
+    }
+    for (std::size_t cells : {1, 2, 3, 4}) EXPECT_GT(seen[cells], 0) << cells;
+    for (std::size_t v = 0; v < s.front.front.size(); ++v) {
+        const std::vector<double> h = s.fromWall(stack, v);
+        for (std::size_t k = 0; k + 1 < h.size(); ++k) EXPECT_NEAR(h[k], first * std::pow(1.1, k), 1e-12);
+    }
+    const LayerReport report = reportOf(s, stack, 6);
+    ASSERT_EQ(report.parts.size(), 4u);
+    EXPECT_EQ(report.parts[1].asked, 2);
+    EXPECT_EQ(report.parts[2].asked, 0);
+    EXPECT_EQ(report.parts[2].meanCount, 0);
+    EXPECT_EQ(report.parts[2].causes[0], report.parts[2].faces);
+    EXPECT_LT(report.facesCoveredFraction, 1);
+    EXPECT_GT(report.parts[0].causes[std::size_t(LayerCause::taper)], 0);
+    EXPECT_LT(report.parts[0].meanCount, 6);
+    EXPECT_NEAR(report.parts[0].askedThickness, stackHeight(first, 1.1, 6), 1e-6);
+}
+
+TEST(Layers, AreTheSameOnAnyNumberOfThreads) {
+    const Sample s;
+    LayerOptions o = options(9, 1.2, s.leastRoom() / 30);
+    o.parts = {{"b", 1}, {"d", 0}};
+    const LayerStack one = makeLayers(s.front, plansOf(o, s.parts));
+    for (std::size_t threads : {1, 2, 3}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        const LayerStack again = makeLayers(s.front, plansOf(o, s.parts));
+        EXPECT_EQ(again.cellOffsets, one.cellOffsets);
+        EXPECT_EQ(again.pointOffsets, one.pointOffsets);
+        EXPECT_EQ(again.vertexPlan, one.vertexPlan);
     }
 }
 
-// More than fits is squeezed, and the report says how much of it was reached.
-TEST(Layers, WhatDoesNotFitIsReported) {
+// Points are found again by their number.
+TEST(Layers, PointsKnowTheirVertex) {
     const Sample s;
-    double most = 0;
-    for (std::size_t v = 0; v < s.front.front.size(); ++v) most = std::max(most, s.room(v));
-    const LayerStack stack = makeLayers(s.front, options(3, 1.2, 10 * most));
-    EXPECT_EQ(stack.validate(), "");
-    EXPECT_GT(stack.thicknessFraction, 0);
-    EXPECT_LT(stack.thicknessFraction, 0.05);
-    EXPECT_EQ(makeLayers(s.front, options(3, 1.2)).thicknessFraction, 1);
+    LayerOptions o = options(4, 1.2);
+    o.parts = {{"a", 1}};
+    for (const LayerStack& stack : {makeLayers(s.front, options(3, 1.2)), makeLayers(s.front, plansOf(o, s.parts))}) {
+        for (std::size_t v = 0; v < stack.vertices; ++v) {
+            for (int k = 0; k < stack.pointsOf(v); ++k) ASSERT_EQ(stack.vertexOfPoint(stack.pointOffset(v) + static_cast<std::size_t>(k)), v);
+        }
+        EXPECT_EQ(stack.pointOffset(stack.vertices - 1) + static_cast<std::size_t>(stack.pointsOf(stack.vertices - 1)), stack.points());
+    }
 }
 
 TEST(Layers, ValidateNamesTheFault) {
     const Sample s;
-    LayerStack stack = makeLayers(s.front, options(3, 1.2));
-    std::swap(stack.fractions[0], stack.fractions[1]);
-    EXPECT_NE(stack.validate(), "");
+    LayerOptions o = options(4, 1.2);
+    o.parts = {{"a", 1}};
+    const LayerStack sound = makeLayers(s.front, plansOf(o, s.parts));
+    ASSERT_EQ(sound.validate(s.front), "");
+    LayerStack stack = sound;
+    stack.pointOffsets.pop_back();
+    EXPECT_THAT(stack.validate(s.front), testing::HasSubstr("sizes"));
+    stack = sound;
+    for (std::size_t f = 40; f < stack.cellOffsets.size(); ++f) stack.cellOffsets[f] += 2;
+    EXPECT_THAT(stack.validate(s.front), testing::AnyOf(testing::HasSubstr("differ"), testing::HasSubstr("points where")));
+    stack = sound;
+    stack.plans[0].growth = -1;
+    EXPECT_THAT(stack.validate(s.front), testing::HasSubstr("do not fall"));
 }
 
 } // namespace

@@ -1,5 +1,5 @@
 // Proves: assembled from random kept cells at the start of the fit, with one layer and with several, in
-// several zones, the mesh is valid to the last face and every cell right way out.
+// several zones, and with counts that differ from part to part, the mesh is valid to the last face and every cell right way out.
 #include "carve/kept_checks.h"
 #include "i2b/assemble/assemble.h"
 #include "i2b/carve/carve.h"
@@ -65,6 +65,56 @@ TEST_P(RandomAssembly, IsValid) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Many, RandomAssembly, testing::Range(0u, 4u));
+
+// A quarter of the wall each for four parts, by the halves of the box in x and y.
+void assignQuarters(Front& front) {
+    Box box;
+    for (const Vec3& p : front.front) box.add(p);
+    for (std::size_t f = 0; f < front.part.size(); ++f) {
+        const auto v = static_cast<std::size_t>(front.mesh.fv_begin(FrontMesh::FaceHandle(static_cast<int>(f)))->idx());
+        const Vec3 d = front.front[v] - box.centre();
+        front.part[f] = (d.x > 0) + 2 * (d.y > 0);
+    }
+}
+
+// Stacks of different counts side by side: all cells are closed, cells of a stack lie one on the other from its front face
+// to its wall face, and the mesh is the same on any number of threads.
+TEST_P(RandomAssembly, OfMixedCountsIsValid) {
+    const std::vector<Part> parts{{"a", "", 1}, {"b", "", 1}, {"c", "", 1}, {"d", "", 1}};
+    for (unsigned seed = 10 * GetParam(); seed < 10 * GetParam() + 5; ++seed) {
+        const CarvedAtRandom c(seed, {5, 6, 4}, 1 + static_cast<int>(seed % 3), 1, 0.05 + 0.05 * (seed % 7), seed % 2 == 1);
+        const LatticeMesh lattice(c.grid, c.kept);
+        Front front = buildFront(lattice, startThickness);
+        assignQuarters(front);
+        LayerOptions options;
+        options.count = 4;
+        if (seed % 2 == 0) options.first = 0.012, options.unit = LayerUnit::cell; // five cells, four where there is no room
+        options.parts = {{"b", 0}, {"c", 1}, {"d", 7, 0, 0, 1.4}};
+        const LayerStack stack = makeLayers(front, plansOf(options, parts));
+        ASSERT_EQ(stack.validate(front), "");
+        const PolyMesh mesh = assemble({lattice, c.kept, front, stack, parts});
+        const std::string what = "seed " + std::to_string(seed);
+        expectSound(mesh, what);
+        EXPECT_EQ(mesh.cells, static_cast<std::int64_t>(c.kept.cellCount() + stack.cells())) << what;
+        EXPECT_EQ(mesh.points.size(), static_cast<std::size_t>(lattice.pointCount()) + stack.points()) << what;
+        std::vector<int> wallFaces(static_cast<std::size_t>(mesh.cells), 0);
+        for (const Patch& p : mesh.patches) {
+            for (std::int32_t f = p.start; p.type == "wall" && f < p.start + p.count; ++f) ++wallFaces[static_cast<std::size_t>(mesh.owner[static_cast<std::size_t>(f)])];
+        }
+        for (std::size_t f = 0; f < stack.faces; ++f) {
+            const std::size_t first = c.kept.cellCount() + stack.cellOffset(f);
+            const auto cells = static_cast<std::size_t>(stack.cellsOf(f));
+            for (std::size_t k = 0; k < cells; ++k) {
+                ASSERT_EQ(wallFaces[first + k], k + 1 == cells ? 1 : 0) << what;
+                ASSERT_EQ(mesh.cellLayer[first + k], cells - k) << what;
+            }
+        }
+        for (std::size_t threads : {1, 2, 3}) {
+            const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+            EXPECT_EQ(assemble({lattice, c.kept, front, makeLayers(front, plansOf(options, parts)), parts}).checksum(), mesh.checksum()) << what;
+        }
+    }
+}
 
 // Kept cells, prisms and zones add up; the sum of the cells' volumes is that of the kept cells and the
 // prisms.

@@ -90,6 +90,13 @@ void expectSame(const Options& a, const Options& b) {
     EXPECT_EQ(a.layers.count, b.layers.count);
     EXPECT_EQ(a.layers.first, b.layers.first);
     EXPECT_EQ(a.layers.growth, b.layers.growth);
+    EXPECT_EQ(a.layers.thickness, b.layers.thickness);
+    EXPECT_EQ(a.layers.unit, b.layers.unit);
+    EXPECT_EQ(a.layers.yPlus, b.layers.yPlus);
+    EXPECT_EQ(a.layers.velocity, b.layers.velocity);
+    EXPECT_EQ(a.layers.viscosity, b.layers.viscosity);
+    EXPECT_EQ(a.layers.length, b.layers.length);
+    expectSameItems(a.layers.parts, b.layers.parts);
     EXPECT_EQ(a.output.folder, b.output.folder);
     EXPECT_EQ(a.output.formats, b.output.formats);
     EXPECT_EQ(a.output.ascii, b.output.ascii);
@@ -228,6 +235,31 @@ TEST(CaseFile, NamesFileLineAndKeyOfFeatures) {
                 AllOf(HasSubstr("car.toml:3, key feature.box"), HasSubstr("'some'"), HasSubstr("\"all\" or \"none\"")));
     EXPECT_THAT(complaint("[[feature.box]]\nbox = [0, 0, 0, 1, 1, 1]"), HasSubstr("edges = ..."));
     EXPECT_THAT(complaint("feature = 3"), HasSubstr("unknown key 'feature'"));
+}
+
+// Layers in a table of their own are the same as under their keys; of a part what is left out is 0.
+TEST(CaseFile, ReadsLayersFromTheirTable) {
+    const Case table = parseCase("[layer]\ncount = 5\nfirst = 0.1\nthickness = 1\ngrowth = 1.25\nunit = 'cell'\n"
+                                 "[[layer.part]]\npart = 'wheel.*'\ncount = 2\ngrowth = 1.5\n"
+                                 "[[layer.part]]\npart = 'body'\ncount = 'none'\n", "");
+    const LayerOptions& l = table.options.layers;
+    EXPECT_EQ(l.count, 5);
+    EXPECT_EQ(l.first, 0.1);
+    EXPECT_EQ(l.thickness, 1);
+    EXPECT_EQ(l.growth, 1.25);
+    EXPECT_EQ(l.unit, LayerUnit::cell);
+    expectSameItems(l.parts, {{"wheel.*", 2, 0, 0, 1.5}, {"body", 0, 0, 0, 0}});
+    const Case keys = parseCase("layers = 5\nfirst-layer = 0.1\nlayer-thickness = 1\ngrowth = 1.25\nlayer-unit = 'cell'\n"
+                                "part-layers = [{ part = 'wheel.*', count = 2, growth = 1.5 }, { part = 'body', count = 0 }]", "");
+    expectSame(keys.options, table.options);
+    EXPECT_EQ(parseCase("[layer]\ny-plus = 1\nvelocity = 2\nviscosity = 3\nlength = 4", "").options.layers.length, 4);
+
+    EXPECT_THAT(complaint("[layer]\nfirst = 1\nunit = 'mm'"), AllOf(HasSubstr("car.toml:3, key layer.unit"), HasSubstr("\"m\" or \"cell\"")));
+    EXPECT_THAT(complaint("[[layer.part]]\npart = 'a'\ncount = 'some'"),
+                AllOf(HasSubstr("car.toml:3, key layer.part"), HasSubstr("a whole number, or \"none\"")));
+    EXPECT_THAT(complaint("[[layer.part]]\npart = 'a'\nfirst = 1"), AllOf(HasSubstr("car.toml:1"), HasSubstr("an entry is missing")));
+    EXPECT_THAT(complaint("[[layer.part]]\npart = 'a'\ncount = 1\nheight = 1"), HasSubstr("unknown entry 'height'"));
+    EXPECT_THAT(complaint("growth = 1\n[layer]\ngrowth = 2"), AllOf(HasSubstr("car.toml:3"), HasSubstr("line 1")));
 }
 
 TEST(CaseFile, NamesFileLineAndKeyInTables) {

@@ -185,6 +185,34 @@ TEST(CommandLine, TakesFeatures) {
     EXPECT_THAT(complaint({"mesh", "a.stl", "--feature-box=0,0,1,all"}), HasSubstr("3 numbers where 6 are needed"));
 }
 
+// Rules for parts, of which the name may hold commas and "=" itself; the command line's heights replace the case file's.
+TEST(CommandLine, TakesLayers) {
+    const CommandLine line = parseCommandLine(
+        {"mesh", "--part-layers", "wheel.*=3", "--part-layers=fin{1,2}=4,growth=1.3,first=1e-3", "a.stl", "--part-layers", "body=none",
+         "--part-layers", "a(?=b),c=2,thickness=.5", "--layers", "5", "--layer-thickness", "0.4", "--layer-unit", "cell", "b.stl"});
+    const LayerOptions& l = line.given.options.layers;
+    EXPECT_THAT(line.given.options.geometry.files, ElementsAre("a.stl", "b.stl"));
+    EXPECT_EQ(l.count, 5);
+    EXPECT_EQ(l.thickness, 0.4);
+    EXPECT_EQ(l.unit, LayerUnit::cell);
+    ASSERT_EQ(l.parts.size(), 4u);
+    const auto rule = [&](std::size_t i) { return std::tuple(l.parts[i].part, l.parts[i].count, l.parts[i].first, l.parts[i].thickness, l.parts[i].growth); };
+    EXPECT_EQ(rule(0), std::tuple("wheel.*", 3, 0, 0, 0));
+    EXPECT_EQ(rule(1), std::tuple("fin{1,2}", 4, 1e-3, 0, 1.3));
+    EXPECT_EQ(rule(2), std::tuple("body", 0, 0, 0, 0));
+    EXPECT_EQ(rule(3), std::tuple("a(?=b),c", 2, 0, 0.5, 0));
+    EXPECT_EQ(parseCase(formatCase(line.given), "").options.layers.parts.size(), 4u);
+    for (const char* text : {"wheel", "=3", "wheel=x", "wheel=2.5", "wheel=2,height=3", "wheel=2,first=x", "first=3,"})
+        EXPECT_THAT(complaint({"mesh", "a.stl", "--part-layers", text}), HasSubstr("--part-layers")) << text;
+    EXPECT_THAT(complaint({"mesh", "a.stl", "--layer-unit", "mm"}), HasSubstr("'mm' is neither m nor cell"));
+
+    const CaseOnDisk plate("geometry = 'a.stl'\nsize = 1\ny-plus = 30\nvelocity = 40\nviscosity = 1.5e-5\nlength = 4\n");
+    EXPECT_TRUE(validate(parseCommandLine({"mesh", plate.path, "--first-layer", "0.001"}).given.options).empty());
+    EXPECT_EQ(parseCommandLine({"mesh", plate.path, "--y-plus", "1"}).given.options.layers.velocity, 40);
+    const CaseOnDisk height("geometry = 'a.stl'\nsize = 1\nfirst-layer = 0.001\n");
+    EXPECT_TRUE(validate(parseCommandLine({"mesh", height.path, "--y-plus", "1", "--velocity", "40", "--viscosity", "1e-5", "--length", "4"}).given.options).empty());
+}
+
 // `regions` writes only where the command line itself says so.
 TEST(CommandLine, KnowsWhetherOutWasGiven) {
     const CaseOnDisk file("geometry = 'a.stl'\nsize = 1\nout = 'here'\n");

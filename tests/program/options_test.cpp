@@ -17,6 +17,8 @@ Options good() {
     return options;
 }
 
+void setPlate(Options& o) { o.layers.yPlus = 30, o.layers.velocity = 40, o.layers.viscosity = 1.5e-5, o.layers.length = 4.6; }
+
 std::vector<std::string> keys(const Options& options) {
     std::vector<std::string> found;
     for (const Problem& problem : validate(options)) {
@@ -90,6 +92,22 @@ TEST(Validate, NamesEachBrokenOption) {
         {"first-layer", [](Options& o) { o.layers.first = -1; }},
         {"growth", [](Options& o) { o.layers.growth = 0.4; }},
         {"growth", [](Options& o) { o.layers.growth = 5; }},
+        {"layer-thickness", [](Options& o) { o.layers.thickness = -1; }},
+        {"growth", [](Options& o) { o.layers.count = 3, o.layers.first = 1, o.layers.thickness = 4, o.layers.growth = 1.2; }},
+        {"layer-thickness", [](Options& o) { o.layers.count = 3, o.layers.first = 1, o.layers.thickness = 40; }},
+        {"layer-thickness", [](Options& o) { o.layers.first = 1, o.layers.thickness = 2; }},
+        {"part-layers", [](Options& o) { o.layers.parts = {{"a(", 1}}; }},
+        {"part-layers", [](Options& o) { o.layers.parts = {{"a", 101}}; }},
+        {"part-layers", [](Options& o) { o.layers.parts = {{"a", 1, -1}}; }},
+        {"part-layers", [](Options& o) { o.layers.parts = {{"a", 1, 0, 0, 9}}; }},
+        {"part-layers", [](Options& o) { o.layers.parts = {{"a", 3, 1, 4, 1.2}}; }},
+        {"y-plus", [](Options& o) { o.layers.yPlus = -1; }},
+        {"viscosity", [](Options& o) { o.layers.viscosity = -1; }},
+        {"y-plus", [](Options& o) { o.layers.yPlus = 1; }},
+        {"y-plus", [](Options& o) { o.layers.velocity = 40, o.layers.viscosity = 1.5e-5, o.layers.length = 1; }},
+        {"y-plus", [](Options& o) { setPlate(o), o.layers.first = 1e-3; }},
+        {"y-plus", [](Options& o) { setPlate(o), o.layers.unit = LayerUnit::cell; }},
+        {"y-plus", [](Options& o) { setPlate(o), o.layers.viscosity = 1; }},
         {"format", [](Options& o) { o.output.formats = {"vtk"}; }},
         {"out", [](Options& o) { o.output.folder.clear(); }},
         {"threads", [](Options& o) { o.threads = -1; }},
@@ -102,6 +120,24 @@ TEST(Validate, NamesEachBrokenOption) {
     Options options = good();
     options.layers.growth = options.size.surface = options.geometry.featureAngle = nan;
     EXPECT_THAT(keys(options), ElementsAre("size", "feature-angle", "growth"));
+}
+
+// Figures that do not contradict each other are taken, whichever of them are given.
+TEST(Validate, TakesLayersGivenInAnyWay) {
+    const std::vector<void (*)(Options&)> cases{
+        [](Options& o) { o.layers = {5, 1e-3, 1.2}; },
+        [](Options& o) { o.layers = {5, 1e-3, 0, 8e-3}; },
+        [](Options& o) { o.layers = {5, 0, 1.2, 8e-3, LayerUnit::cell}; },
+        [](Options& o) { o.layers = {3, 1, 1.2, 3.64}; },
+        [](Options& o) { o.layers = {0, 1, 1.2, 99}; }, // no layers, no heights
+        [](Options& o) { setPlate(o); },
+        [](Options& o) { o.layers.first = 1e-3, o.layers.growth = 1.2, o.layers.parts = {{"a", 0}, {"b", 2, 0, 4e-3}, {"c", 2, 0, 0.01, 1.5}}; },
+    };
+    for (const auto& set : cases) {
+        Options options = good();
+        set(options);
+        EXPECT_THAT(keys(options), IsEmpty());
+    }
 }
 
 // The error names every problem at once, and where each key was set: line of the case file or option.

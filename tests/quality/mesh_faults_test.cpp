@@ -63,6 +63,25 @@ TEST(MeshFaults, AgreeWithTheReport) {
     EXPECT_EQ(poor, std::vector<std::int32_t>(cells.begin(), cells.end()));
 }
 
+// Of cells that may be thin the determinants do not count, nor weights and volume ratios among them; all else does.
+TEST(MeshFaults, ThinCellsMayBeThin) {
+    std::mt19937 random(1);
+    const PolyMesh mesh = block(random);
+    const std::int32_t thinFrom = mesh.cells / 2;
+    const QualityReport report = measureQuality(mesh, strict());
+    std::int64_t expected = 0, spared = 0;
+    for (const char* name : {"nonOrthoFaces", "skewFaces"}) expected += findCheck(report, name)->count;
+    const auto count = [&](bool thin) { thin ? ++spared : ++expected; };
+    for (const char* name : {"lowWeightFaces", "lowVolRatioFaces"})
+        for (const std::int32_t f : findCheck(report, name)->ids) count(mesh.owner[static_cast<std::size_t>(f)] >= thinFrom);
+    for (const std::int32_t c : findCheck(report, "underdeterminedCells")->ids) count(c >= thinFrom);
+    ASSERT_GT(spared, 10);
+    FaultCount faults;
+    const Rows cellFaces = buildCellFaces(mesh);
+    MeshFaults(mesh, cellFaces, strict(), thinFrom).poorCells(faults);
+    EXPECT_EQ(faults.all, expected);
+}
+
 // Measured again where points moved, or all anew: the same, whichever cells of the moved points are named.
 TEST(MeshFaults, UpdateIsAsGoodAsAFreshLook) {
     std::size_t bad = 0;

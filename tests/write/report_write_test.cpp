@@ -29,7 +29,7 @@ RunReport sample() {
     r.quality.emplace();
     r.quality->maxSkewness = 1.25;
     r.fit.emplace();
-    r.layers = LayerReport{3, 2.5, 1, 0.99};
+    r.layers = LayerReport{3, 2.5, 1, 0.99, 2e-3, 1e-3, 3e-3, {{"body", 3, 1e-3, 4e-3, 2.5, 2e-3, 3e-3, 6, {3, 2, 1, 0}}}};
     r.patches = {{"body", "wall", 5, 6}};
     r.regions.resize(1);
     r.regions[0].name = "outside";
@@ -61,7 +61,18 @@ TEST(ReportWrite, HasTheContractsKeys) {
                                                         "feature_capture_fraction", "tilted_face_fraction",
                                                         "tilted_45_face_fraction", "part_border_fraction", "part_border_samples"));
     EXPECT_THAT(keys(json["layers"]), testing::ElementsAre("requested", "mean_count",
-                                                           "faces_covered_fraction", "thickness_fraction"));
+                                                           "faces_covered_fraction", "thickness_fraction",
+                                                           "mean_first_height", "min_first_height", "max_first_height", "parts"));
+    EXPECT_EQ(json["layers"]["max_first_height"], 3e-3);
+    const Json row = json["layers"]["parts"][0];
+    EXPECT_THAT(keys(row), testing::ElementsAre("name", "requested", "requested_first_height", "requested_thickness", "mean_count",
+                                                "mean_first_height", "mean_thickness", "faces", "faces_short"));
+    EXPECT_EQ(row["name"], "body");
+    EXPECT_EQ(row["mean_count"], 2.5);
+    EXPECT_EQ(row["mean_thickness"], 3e-3);
+    EXPECT_THAT(keys(row["faces_short"]), testing::ElementsAre("taper", "compressed", "room"));
+    EXPECT_EQ(row["faces_short"]["taper"], 2);
+    EXPECT_EQ(row["faces_short"]["compressed"], 1);
     EXPECT_THAT(keys(json["patches"][0]), testing::ElementsAre("name", "type", "faces"));
     EXPECT_EQ(json["quality"]["ok"], true);
     EXPECT_EQ(json["quality"]["max_skewness"], 1.25);

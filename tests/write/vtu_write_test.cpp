@@ -127,7 +127,8 @@ TEST(VtuWrite, VtkReadsBackWhatWasWritten) {
     mesh.cellLevel = {1, 2, 3, 4, 5};
     mesh.cellLayer = {0, 1, 0, 2, 0};
     mesh.cellRegion = {0, 0, 7, -1, 300};
-    const std::vector<CellData> data{{"skew<ness>\"&", {0.5f, 1.5f, 2.5f, 3.5f, 4.5f}}};
+    const std::vector<std::int32_t> some{1, 4};
+    const std::vector<CellData> data{{"skew<ness>\"&", {0.5f, 1.5f, 2.5f, 3.5f, 4.5f}}, {"some", {7, 8}, &some}};
     for (const bool compress : {true, false}) {
         writeVtu(mesh, data, temp / "mesh.vtu", {.compress = compress}, Context());
         const auto read = readBack(temp / "mesh.vtu");
@@ -143,6 +144,7 @@ TEST(VtuWrite, VtkReadsBackWhatWasWritten) {
         EXPECT_EQ(read["data"]["region"], (std::vector<int>{0, 0, 7, -1, 300}));
         EXPECT_EQ(read["data"]["patch"], (std::vector<int>{0, 0, 0, 0, 0}));
         EXPECT_EQ(read["data"]["skew<ness>\"&"], (std::vector<double>{0.5, 1.5, 2.5, 3.5, 4.5}));
+        EXPECT_EQ(read["data"]["some"], (std::vector<double>{0, 7, 0, 0, 8}));
     }
 }
 

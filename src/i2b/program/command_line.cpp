@@ -167,6 +167,13 @@ struct Parser {
             if ((key == "external" || key == "internal") && line.given.lines.erase("seed") > 0)
                 domain.seeds.clear();
         }
+        // And so do the two ways to the height of the first layer.
+        for (const auto& [key, edit] : edits) {
+            LayerOptions& layers = line.given.options.layers;
+            if (key == "first-layer" && line.given.lines.erase("y-plus") > 0)
+                layers.yPlus = layers.velocity = layers.viscosity = layers.length = 0;
+            if (key == "y-plus" && line.given.lines.erase("first-layer") > 0) layers.first = 0;
+        }
         for (const auto& [key, edit] : edits) {
             edit(line.given);
             line.outGiven = line.outGiven || key == "out";

@@ -116,6 +116,9 @@ PartLayers toPartLayers(const std::string& option, std::string text) {
             rule.*(figure->second) = toNumber(option, value);
             continue;
         }
+        const std::size_t before = comma == std::string::npos ? comma : text.rfind('=', comma);
+        if (before != std::string::npos && (isNumber(text.substr(before + 1, comma - before - 1)) || text.compare(before + 1, comma - before - 1, "none") == 0))
+            refuse(option, fmt::format("'{}' is no figure of layers", text.substr(comma + 1)), form);
         rule.part = text;
         const auto [end, fault] = std::from_chars(value.data(), value.data() + value.size(), rule.count);
         if (value == "none")

@@ -64,12 +64,14 @@ std::unique_ptr<GridResult> generateGrid(const Options& options, Context& contex
     r.index = stage(
         context, "index", [&] { return std::make_unique<SurfaceIndex>(r.surface); },
         [&](const auto&) { return r.surface.triangles.size(); });
-    refuseTooLarge(r.surface, r.field, options.layers.count, road != Road::mesh);
+    const LayerPlan plan = planOf(requestOf(options.layers), options.layers.unit);
+    const int layerCells = plan.count + (plan.fills() ? 0 : 1); // with the one over them
+    refuseTooLarge(r.surface, r.field, layerCells, road != Road::mesh);
     if (options.size.curvature > 0 || options.size.gapCells > 0) {
         Stage timed(context, "automatic sizes");
         addAutomaticSizes(r.field, *r.index, options.size, options.geometry.featureAngle);
         timed.items = r.surface.triangles.size();
-        refuseTooLarge(r.surface, r.field, options.layers.count, road != Road::mesh);
+        refuseTooLarge(r.surface, r.field, layerCells, road != Road::mesh);
     }
     r.grid = stage(
         context, "grid",
@@ -136,6 +138,7 @@ MeshResult generate(const Options& options, Context& context) {
     out.report = reportOf(c, options, context);
     out.walls = measureLayers(front, layers);
     out.report.layers = summarize(out.walls, front, c.surface.parts, options.layers.count);
+    out.walls.askedFirst = {}, out.walls.askedThickness = {}; // the report has them
     for (std::int32_t& cell : out.walls.wallCell) cell += static_cast<std::int32_t>(lattice->cellCount());
     out.report.wallFaces = static_cast<std::int64_t>(front.ownerCell.size());
     front = {}, layers = {}; // from here on the mesh speaks for itself

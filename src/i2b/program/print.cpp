@@ -92,8 +92,8 @@ std::string summaryText(const RunReport& report) {
             100 * f->wallNodesOnGeometryFraction, 100 * f->featureCaptureFraction);
     if (const auto& l = report.layers)
         text += fmt::format(
-            "layers: {:.2f} of {} on average, {:.1f} % of the faces covered, {:.1f} % of the thickness\n",
-            l->meanCount, l->requested, 100 * l->facesCoveredFraction, 100 * l->thicknessFraction);
+            "layers: {:.2f} of {} on average, {:.1f} % of the faces covered, {:.1f} % of the thickness; first height {:.3g} m\n",
+            l->meanCount, l->requested, 100 * l->facesCoveredFraction, 100 * l->thicknessFraction, l->meanFirst);
     return text;
 }
 

@@ -316,8 +316,9 @@ std::vector<Array> cellArrays(const PolyMesh& mesh, const std::vector<CellData>&
     if (!mesh.cellRegion.empty()) arrays.push_back(plainArray<std::int32_t>("region", mesh.cellRegion));
     arrays.push_back(plainArray<std::int32_t>("patch", walls));
     for (const CellData& d : data)
-        arrays.push_back(d.cells && d.cells->size() == d.values.size() ? sparseArray(d.name, *d.cells, d.values, static_cast<std::size_t>(mesh.cells))
-                                                                       : plainArray<float>(d.name, d.values));
+        arrays.push_back(d.cells && d.cells->size() == d.values.size()
+                             ? sparseArray(d.name, *d.cells, d.values, static_cast<std::size_t>(mesh.cells))
+                             : plainArray<float>(d.name, d.values));
     for (const Array& array : arrays)
         if (array.elements != static_cast<std::size_t>(mesh.cells))
             throw Error(ErrorKind::internal, "cell data does not have one value for each cell",
