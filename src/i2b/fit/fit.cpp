@@ -56,15 +56,12 @@ void store(const Band& band, const std::vector<Vec3>& x, Front& front) {
 }
 
 // Lets go of nodes that could not come near the feature that they are held to: on the surface beside it they serve
-// better. Gives how many.
-std::size_t releaseUnreached(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x, std::vector<Snap>& snaps) {
-    std::vector<std::uint8_t> released(band.walls, 0);
+// better.
+void releaseUnreached(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x, std::vector<Snap>& snaps) {
     parallelFor(band.walls, [&](std::size_t n) {
         if (snaps[n].kind == SnapKind::none || norm(snapLine(index, features, snaps[n], x[n], band.h[n]).point - x[n]) <= unreached * band.h[n]) return;
         snaps[n] = {};
-        released[n] = 1;
     });
-    return static_cast<std::size_t>(std::count(released.begin(), released.end(), std::uint8_t(1)));
 }
 
 // Newly snapped nodes, and two rings around them, are worked on too.
@@ -115,10 +112,10 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
         activateSnapped(band, snaps, active);
     };
     if (options.features) snapAndSplit();
-    pull({1e3, 1e5});
+    pull({1e5});
     if (options.features) snapAndSplit(); // what has come into view since
-    pull({1e6, 1e6});
-    if (options.features && releaseUnreached(band, index, features, x, snaps) > 0) pull({1e4, 1e6});
+    pull({1e6});
+    if (options.features) releaseUnreached(band, index, features, x, snaps);
     snapExactly(band, index, features, snaps, x, energy);
     for (const Snap& s : snaps) summary.snapped += s.kind != SnapKind::none;
     for (std::uint8_t a : active) summary.active += a;

@@ -67,7 +67,7 @@ std::vector<std::uint8_t> nodesOfPoorCorners(const Band& band, const std::vector
 
 struct EnergyOptions {
     std::vector<double> wallWeights{0.1, 10, 100, 1e3, 1e5, 1e6};
-    int newtonSteps = 3;
+    int newtonSteps = 2;
     double floor = 0.03;          // scaled Jacobian below which the wall pulls less
     double featureFloor = 0.01;   // the same for nodes snapped to features
     double cap = 0.3;             // of h: longest step

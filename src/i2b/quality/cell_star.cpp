@@ -9,6 +9,7 @@ namespace {
 using Index = std::size_t;
 constexpr double counts = 0.9;       // of a limit: what is better does not count
 constexpr double leastPyramid = 0.05; // cosine between a face's normal and the way to its centre from the cell's
+constexpr double flat = 1e-9;        // a pyramid below this cosine is wrong, as in mesh_faults.cpp
 constexpr double wrong = 30;         // of a cell inside out
 
 void add(Badness& out, double share) {
@@ -74,11 +75,12 @@ void CellStar::judgeCell(Index i, Badness& out) {
     row_.resize(faces.size());
     for (Index k = 0; k < faces.size(); ++k) row_[k] = shapes_[faceOf_[firstFace_[i] + k]];
     const CellMoments m = own_[i] = measureCell(mesh_, faces, row_, cells_[i]);
-    if (!(m.volume > 0)) add(out, wrong);
+    if (!(m.volume > 0)) out.invalid = true, add(out, wrong);
     for (Index k = 0; k < faces.size(); ++k) {
         const Vec3 arm = row_[k].centre - m.centre;
         const double sign = mesh_.owner[Index(faces[k])] == cells_[i] ? 1 : -1, size = norm(row_[k].area) * norm(arm);
         const double cosine = size > 0 ? sign * dot(row_[k].area, arm) / size : -1;
+        out.invalid = out.invalid || !(cosine > flat);
         if (cosine < leastPyramid) add(out, 1 + (leastPyramid - cosine) / leastPyramid);
     }
     if (cells_[i] >= thinFrom_) return;

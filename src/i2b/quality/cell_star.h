@@ -10,6 +10,7 @@ namespace i2b {
 struct Badness {
     double sum = 0;   // of the squares of what is over 0.9
     double worst = 0;
+    bool invalid = false;  // a cell without a positive volume, or a face pyramid that points the wrong way
 };
 
 class CellStar {

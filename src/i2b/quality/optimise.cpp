@@ -14,6 +14,11 @@ constexpr double offWall = 0.005;     // of h: nodes farther off are pulled in
 constexpr double crossing = 0.05;     // of h: so near to its end a way may meet geometry
 constexpr double leastGain = 1e-3;    // of the sum: what a move must bring
 constexpr double nearLimit = 0.98;    // of a limit: a node on its way to the wall may bring its cells up to there
+// A move for the wall's sake keeps to the limits, or makes nothing worse where they are broken already.
+bool mayStand(const Badness& now, const Badness& before) {
+    return !now.invalid && (now.worst <= nearLimit || (now.worst <= before.worst && now.sum <= before.sum));
+}
+
 constexpr std::array<double, 5> stepLengths{0.25, 0.12, 0.06, 0.03, 0.015}; // of h
 
 } // namespace
@@ -135,7 +140,7 @@ bool Optimiser::mendNode(const Task& task, Worker& worker) {
         if (down == Vec3{}) break;
         const Vec3 to = onWall(task.node, from, from + down * (length * h));
         const Badness b = worker.at(to);
-        if (b.worst > before.worst || !(b.sum < least.sum) || !isFree(task.node, to)) continue;
+        if (b.worst > before.worst || (b.invalid && !before.invalid) || !(b.sum < least.sum) || !isFree(task.node, to)) continue;
         least = b, best = to;
     }
     if (!(least.sum < before.sum * (1 - leastGain))) best = from;
@@ -168,7 +173,7 @@ bool Optimiser::pullNode(const Task& task, Worker& worker) {
     Vec3 best = from;
     for (const double part : {1.0, 0.5, 0.25}) {
         const Vec3 to = from + way * part;
-        if (worker.at(to).worst > std::max(nearLimit, before.worst) || !isFree(task.node, to)) continue;
+        if (!mayStand(worker.at(to), before) || !isFree(task.node, to)) continue;
         best = to;
         break;
     }
@@ -296,7 +301,7 @@ bool Optimiser::snapNode(const Task& task, Worker& worker) {
     worker.begin(task);
     const Vec3 from = worker.from, to = snapLine(guide_.index, guide_.features, wish, from, front_.h[v]).point;
     const Badness before = worker.at(from);
-    const bool there = worker.at(to).worst <= std::max(nearLimit, before.worst) && isFree(task.node, to);
+    const bool there = mayStand(worker.at(to), before) && isFree(task.node, to);
     worker.end(there ? to : from);
     if (there) guide_.snaps[v] = wish;
     return there;
