@@ -1,6 +1,7 @@
 #include "i2b/fit/fit.h"
 #include "i2b/core/parallel.h"
 #include "i2b/fit/corner.h"
+#include "i2b/fit/off_wall.h"
 #include <algorithm>
 
 namespace i2b {
@@ -115,6 +116,7 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     pull({1e6, 1e6});
     if (options.features && releaseUnreached(band, features, x, snaps) > 0) pull({1e4, 1e6});
     snapExactly(band, index, features, snaps, x, energy);
+    summary.offCauses = findOffCauses(band, index, features, snaps, x, energy);
     for (const Snap& s : snaps) summary.snapped += s.kind != SnapKind::none;
     for (std::uint8_t a : active) summary.active += a;
     store(band, x, front);

@@ -8,6 +8,7 @@
 #include "i2b/core/context.h"
 #include "i2b/fit/band.h"
 #include "i2b/fit/features.h"
+#include "i2b/fit/off_cause.h"
 #include "i2b/geometry/features.h"
 #include "i2b/geometry/surface_index.h"
 #include "i2b/options.h"
@@ -23,6 +24,7 @@ struct FitSummary {
     std::size_t active = 0;       // nodes that the energy worked on
     std::size_t snapped = 0;      // wall nodes held to a feature
     std::size_t split = 0;        // front faces split along one
+    std::vector<OffCause> offCauses; // per wall node: why it is off the geometry; none where it is within offInterest (off_wall.h)
 };
 
 // Moves the front's vertices (front and wall positions, movedPoints). Every corner stays positive.

@@ -45,6 +45,17 @@ void requireValid(const std::string& fault, const char* what) {
         throw Error(ErrorKind::internal, fmt::format("{}: {}", what, fault), "", "please report the case");
 }
 
+// What fit and repair know of each wall vertex of the front, in the order of the mesh's wall points: the last of each
+// vertex' stack of layer points.
+template <class T>
+std::vector<T> valuesAt(const std::vector<std::int32_t>& points, const std::vector<T>& perVertex, std::int64_t firstLayerPoint, int layers) {
+    std::vector<T> values;
+    if (perVertex.empty()) return values;
+    values.reserve(points.size());
+    for (const std::int32_t p : points) values.push_back(perVertex[static_cast<std::size_t>((p - firstLayerPoint) / layers)]);
+    return values;
+}
+
 } // namespace
 
 std::unique_ptr<GridResult> generateGrid(const Options& options, Context& context, Road road) {
@@ -117,7 +128,7 @@ MeshResult generate(const Options& options, Context& context) {
         [](const FeatureGraph& f) { return f.edges.size(); });
     std::vector<std::string>& notes = out.cartesian->notes.messages;
     notes.insert(notes.end(), features.notes.begin(), features.notes.end());
-    stage(
+    const FitSummary fitted = stage(
         context, "fit",
         [&] { return fitFront(front, *lattice, *c.index, features, options.fit, context); },
         [](const FitSummary& s) { return s.wallNodes; });
@@ -136,13 +147,22 @@ MeshResult generate(const Options& options, Context& context) {
     out.report.layers =
         LayerReport{options.layers.count, layers.meanCount, layers.facesCovered, layers.thicknessFraction};
     out.report.wallFaces = static_cast<std::int64_t>(front.ownerCell.size());
+    const std::int64_t firstLayerPoint = lattice->pointCount();
+    const int layerCount = layers.count;
     front = {}, layers = {}; // from here on the mesh speaks for itself
     lattice.reset();
     out.report.quality = stage(
         context, "quality", [&] { return measureQuality(out.mesh); },
         [](const QualityReport& q) { return q.cells; });
     out.report.fit = stage(
-        context, "fit quality", [&] { return measureFit(out.mesh, *c.index, features); },
+        context, "fit quality",
+        [&] {
+            const FitReport fit = measureFit(out.mesh, *c.index, features, {}, &out.wallNodes);
+            const auto ofWall = [&](const auto& perFan) { return valuesAt(out.wallNodes.points, perFan, firstLayerPoint, layerCount); };
+            out.offCauses = settleCauses(out.wallNodes, ofWall(fitted.offCauses), ofWall(repaired.retreatedWalls));
+            out.report.offGeometry = listOffPlaces(out.mesh, out.wallNodes, out.offCauses, *c.index);
+            return fit;
+        },
         [](const FitReport& f) { return f.wallNodes; });
     out.report.stages = context.stages();
     out.report.cells = out.mesh.cells;

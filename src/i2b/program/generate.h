@@ -30,6 +30,8 @@ struct GridResult {
 struct MeshResult {
     std::unique_ptr<GridResult> cartesian;
     PolyMesh mesh;
+    WallNodes wallNodes;            // how far each is off the geometry
+    std::vector<OffCause> offCauses; // and why; as wallNodes.points
     RunReport report; // all but the total time and memory, which the caller knows at its end
 };
 

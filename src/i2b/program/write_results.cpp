@@ -19,8 +19,9 @@ bool wants(const OutputOptions& output, const char* format) {
     return std::ranges::find(output.formats, format) != output.formats.end();
 }
 
-void writeMeshFiles(const PolyMesh& mesh, const OutputOptions& output, AtomicFolder& folder,
+void writeMeshFiles(const MeshResult& result, const OutputOptions& output, AtomicFolder& folder,
                     Context& context) {
+    const PolyMesh& mesh = result.mesh;
     Stage stage(context, "write");
     stage.items = static_cast<std::uint64_t>(mesh.cells);
     if (wants(output, "openfoam")) {
@@ -29,14 +30,19 @@ void writeMeshFiles(const PolyMesh& mesh, const OutputOptions& output, AtomicFol
         options.note = "i2b " I2B_VERSION;
         writeFoam(mesh, folder, options, context);
     }
+    static_assert(sizeof(OffCause) == 1);
+    const std::vector<float> off(result.wallNodes.distanceInH.begin(), result.wallNodes.distanceInH.end());
+    const auto* const causes = reinterpret_cast<const std::uint8_t*>(result.offCauses.data());
+    const std::vector<PointData> values{{"off_geometry", result.wallNodes.points, std::span<const float>(off)},
+                                        {"off_cause", result.wallNodes.points, std::span(causes, result.offCauses.size())}};
     if (wants(output, "vtu")) {
         CellQuality q = measureCellQuality(mesh);
         const std::vector<CellData> data{{"nonOrthogonality", std::move(q.nonOrthogonality)},
                                          {"skewness", std::move(q.skewness)},
                                          {"volume", std::move(q.volume)}};
-        writeVtu(mesh, data, folder.place("mesh.vtu"), {}, context);
+        writeVtu(mesh, data, folder.place("mesh.vtu"), {}, context, values);
     }
-    if (wants(output, "ply")) writePly(mesh, folder.place("wall.ply"), context);
+    if (wants(output, "ply")) writePly(mesh, folder.place("wall.ply"), context, {}, values);
 }
 
 void writeGridFile(const GridResult& result, const RunReport& report, const Options& options, AtomicFolder& folder,
@@ -69,7 +75,7 @@ void writeReportFile(RunReport& report, const OutputOptions& output, AtomicFolde
 void writeMeshResults(MeshResult& result, const Options& options, Context& context,
                       const CompleteReport& complete) {
     AtomicFolder folder(options.output.folder);
-    writeMeshFiles(result.mesh, options.output, folder, context);
+    writeMeshFiles(result, options.output, folder, context);
     result.mesh = {}; // on the disk by now
     returnFreedMemory();
     writeGridFile(*result.cartesian, result.report, options, folder, context);

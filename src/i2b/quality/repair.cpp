@@ -235,6 +235,8 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, c
     summary.poorRemaining = least.all;
     nodes.store(front);
     for (float b : nodes.beta) summary.retracted += b < 1;
+    const std::size_t core = nodes.beta.size() - front.front.size();
+    for (std::size_t v = core; v < nodes.beta.size(); ++v) summary.retreatedWalls.push_back(nodes.beta[v] < 1);
     summary.remaining = static_cast<std::int64_t>(bad.size());
     return summary;
 }

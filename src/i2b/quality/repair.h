@@ -6,6 +6,7 @@
 #pragma once
 #include "i2b/assemble/assemble.h"
 #include <cstdint>
+#include <vector>
 
 namespace i2b {
 
@@ -17,6 +18,7 @@ struct RepairSummary {
     std::int64_t poorFaces = 0;  // faces over the limits of non-orthogonality, skewness, weight or volume ratio at the
                                  // beginning, and cells of small determinant
     std::int64_t poorRemaining = 0;
+    std::vector<std::uint8_t> retreatedWalls; // per wall node: stepped back; empty where nothing did
 };
 
 // startThickness: what buildFront() was given. Moves points of mesh, and front positions alike.

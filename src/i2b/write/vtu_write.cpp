@@ -298,6 +298,34 @@ void writeGroup(OutputFile& file, const char* name, std::span<Array> arrays) {
     file.write(fmt::format("      </{}>\n", name));
 }
 
+// Zero but for the points named.
+template <class T>
+Array sparseArray(const PointData& data, std::span<const T> values, std::size_t elements) {
+    const std::span<const std::int32_t> points = data.points;
+    return {attributes<T>(data.name), elements, sizeof(T), [points, values](std::size_t begin, std::size_t end, char* out) {
+                std::memset(out, 0, (end - begin) * sizeof(T));
+                auto at = std::lower_bound(points.begin(), points.end(), static_cast<std::int32_t>(begin));
+                for (; at != points.end() && static_cast<std::size_t>(*at) < end; ++at) {
+                    const T value = values[static_cast<std::size_t>(at - points.begin())];
+                    std::memcpy(out + (static_cast<std::size_t>(*at) - begin) * sizeof(T), &value, sizeof value);
+                }
+            }};
+}
+
+std::vector<Array> pointArrays(const PolyMesh& mesh, const std::vector<PointData>& data) {
+    std::vector<Array> arrays;
+    for (const PointData& d : data) {
+        std::visit(
+            [&](const auto& values) {
+                if (values.size() != d.points.size())
+                    throw Error(ErrorKind::internal, fmt::format("point data '{}' has {} values for {} points", d.name, values.size(), d.points.size()), "", "");
+                arrays.push_back(sparseArray(d, values, mesh.points.size()));
+            },
+            d.values);
+    }
+    return arrays;
+}
+
 std::vector<Array> cellArrays(const PolyMesh& mesh, const std::vector<CellData>& data,
                               const std::vector<std::int32_t>& walls) {
     std::vector<Array> arrays;
@@ -316,9 +344,9 @@ std::vector<Array> cellArrays(const PolyMesh& mesh, const std::vector<CellData>&
 } // namespace
 
 void writeVtu(const PolyMesh& mesh, const std::vector<CellData>& data, const std::filesystem::path& path,
-              const VtuWriteOptions& options, const Context& context) {
+              const VtuWriteOptions& options, const Context& context, const std::vector<PointData>& values) {
     const std::vector<std::int32_t> walls = wallPatches(mesh);
-    std::vector<Array> cellData = cellArrays(mesh, data, walls);
+    std::vector<Array> cellData = cellArrays(mesh, data, walls), pointData = pointArrays(mesh, values);
     const CellTable table = buildCellTable(mesh);
     context.checkCancelled();
     Array points = plainArray<double>("Points", {&mesh.points.data()->x, 3 * mesh.points.size()});
@@ -338,11 +366,13 @@ void writeVtu(const PolyMesh& mesh, const std::vector<CellData>& data, const std
                            options.compress ? " compressor=\"vtkZLibDataCompressor\"" : ""));
     file.write(fmt::format("  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
                            mesh.points.size(), mesh.cells));
+    if (!pointData.empty()) writeGroup(file, "PointData", pointData);
     writeGroup(file, "CellData", cellData);
     writeGroup(file, "Points", {&points, 1});
     writeGroup(file, "Cells", cells);
     file.write("    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n   _");
     Appender appender(file, options, context);
+    for (const Array& array : pointData) appender.append(array);
     for (const Array& array : cellData) appender.append(array);
     appender.append(points);
     for (const Array& array : cells) appender.append(array);
