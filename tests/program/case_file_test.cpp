@@ -87,6 +87,7 @@ void expectSame(const Options& a, const Options& b) {
     }
     EXPECT_EQ(a.fit.clearance, b.fit.clearance);
     EXPECT_EQ(a.fit.sweeps, b.fit.sweeps);
+    EXPECT_EQ(a.fit.seconds, b.fit.seconds);
     EXPECT_EQ(a.layers.count, b.layers.count);
     EXPECT_EQ(a.layers.first, b.layers.first);
     EXPECT_EQ(a.layers.growth, b.layers.growth);

@@ -76,6 +76,8 @@ void activateSnapped(const Band& band, const std::vector<Snap>& snaps, std::vect
 FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& index, const FeatureGraph& graph,
                     const FitOptions& options, const Context& context) {
     FitSummary summary;
+    EnergyOptions energy;
+    energy.budget = Budget(options.seconds);
     Band band = buildBand(mesh, front, rings);
     summary.wallNodes = band.walls;
     context.checkCancelled();
@@ -89,14 +91,14 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     const FeatureIndex features(graph);
     std::vector<Snap> snaps(band.walls);
     std::vector<std::uint8_t> active = activeNodes(band, index, x);
-    EnergyOptions energy;
     const auto pull = [&](std::vector<double> weights) {
         energy.wallWeights = std::move(weights);
-        minimiseEnergy(band, index, features, snaps, active, x, energy, context);
+        if (!minimiseEnergy(band, index, features, snaps, active, x, energy, context)) summary.cutShort = true;
     };
+    const auto seekFeatures = [&] { return options.features && !energy.budget.isOver(); };
     pull({0.1, 10, 100});
     active = activeNodes(band, index, x);
-    if (options.features) {
+    if (seekFeatures()) {
         snapToFeatures(band, front, index, features, x, snaps);
         activateSnapped(band, snaps, active);
     }
@@ -110,9 +112,9 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
         if (split > 0) renewPrisms(band, front);
         activateSnapped(band, snaps, active);
     };
-    if (options.features) snapAndSplit();
+    if (seekFeatures()) snapAndSplit();
     pull({1e3, 1e5});
-    if (options.features) snapAndSplit(); // what has come into view since
+    if (seekFeatures()) snapAndSplit(); // what has come into view since
     pull({1e6, 1e6});
     if (options.features && releaseUnreached(band, features, x, snaps) > 0) pull({1e4, 1e6});
     snapExactly(band, index, features, snaps, x, energy);

@@ -15,7 +15,7 @@ enum class OffCause : std::uint8_t {
     feature = 3,      // held to a sharp edge, border or corner; on it a corner of its cells would fall below the floor
     featureOff = 4,   // on the line that it is held to, which is itself off the geometry there
     gap = 5,          // a sheet of the geometry faces it within two cells: a passage, slot or groove, bridged
-    opening = 6,      // over an opening in a sheet, narrower than two cells, with nothing behind: bridged
+    bridged = 6,      // over an opening in a sheet, narrower than two cells, with nothing behind; or no geometry within two cells
     sheetBetween = 7, // other geometry lies between it, or its front node, and its target
     boxSide = 8,      // in a side of the domain box, where the geometry does not reach that side or meets it too flat
     unfinished = 9,   // nothing that was looked at bars the way: the fit ended before
@@ -27,7 +27,7 @@ inline constexpr std::size_t offCauses = 12;
 // As in report.json.
 inline const char* nameOf(OffCause cause) {
     constexpr std::array<const char*, offCauses> names{"none",    "quality",       "beside_edge", "feature",    "feature_off", "gap",
-                                                       "opening", "sheet_between", "box_side",    "unfinished", "retreated",   "tilted"};
+                                                       "bridged", "sheet_between", "box_side",    "unfinished", "retreated",   "tilted"};
     return names[static_cast<std::size_t>(cause)];
 }
 

@@ -9,7 +9,6 @@ namespace {
 constexpr double onTarget = 0.01;     // of h: nearer is there
 constexpr double overSheet = 0.05;    // of h: what the fit lets a way pass through at its end
 constexpr double passage = 2;         // of h: what is narrower is bridged
-constexpr double opposite = -0.5;     // cosine between the directions to the two sides of a gap
 constexpr double looksBack = 0.35;    // cosine: half a cell behind an opening its rim is seen this far towards the flow
 constexpr double besideReach = 1;     // of h: for features beside a node
 const double folded = std::cos(35 * 3.14159265358979323846 / 180);
@@ -65,19 +64,31 @@ bool facesSheet(const Node& node) {
     return length > 0 && length < reach && node.index.firstHit(node.f, node.target + out * (reach / length));
 }
 
-// Between two lips over less than a passage's width: the bridged mouth of a slot, a groove or an opening.
-OffCause bridged(const Node& node) {
-    const Vec3 way = node.target - node.b, down = normalized(node.b - node.f);
-    const double d = norm(way), reach = passage * node.h;
-    if (d <= 0 || d >= reach) return OffCause::none;
-    const ClosestPoint other = node.index.closest(node.b - way * (node.h / d), reach);
-    if (!other) return OffCause::none;
-    const Vec3 across = other.point - node.b;
-    if (dot(across, way) > opposite * norm(across) * d || norm(across) + d > reach) return OffCause::none;
-    const Vec3 behind = node.b + down * (0.5 * node.h);
+// Does geometry end the room that begins at the target, straight away from it and within the width of a passage? From
+// the target outwards the distance to the geometry grows like the way, until the other side is as near. Along a wall that
+// stands beside the way, as in a corner, it does not: then the middle is not clear.
+bool hasOtherSide(const Node& node) {
+    const Vec3 out = normalized(node.b - node.target);
+    constexpr int steps = 8;
+    for (int k = 1; k <= steps; ++k) {
+        const double r = passage * node.h * k / steps;
+        const ClosestPoint c = node.index.closest(node.target + out * r, 0.9 * r);
+        if (!c) continue;
+        const Vec3 across = c.point - node.target;
+        const double width = dot(across, out);
+        if (width <= 0 || width > passage * node.h || norm(across - out * width) > 0.3 * width) return false;
+        return !node.index.closest(node.target + out * (0.5 * width), 0.3 * width);
+    }
+    return false;
+}
+
+// Between two lips: the bridged mouth of a slot, a groove or an opening.
+OffCause betweenLips(const Node& node) {
+    if (meets(node.index, node.f, node.b, 1e-3 * node.h) || !hasOtherSide(node)) return OffCause::none; // past the surface there are none
+    const Vec3 down = normalized(node.b - node.f), behind = node.b + down * (0.5 * node.h);
     if (node.index.firstHit(node.b, behind)) return OffCause::gap;
-    const ClosestPoint rim = node.index.closest(behind, reach);
-    return rim && dot(behind - rim.point, down) < looksBack * rim.distance ? OffCause::gap : OffCause::opening;
+    const ClosestPoint rim = node.index.closest(behind, passage * node.h);
+    return rim && dot(behind - rim.point, down) < looksBack * rim.distance ? OffCause::gap : OffCause::bridged;
 }
 
 Vec3 normalAt(const Node& node, std::size_t wall) {
@@ -100,13 +111,14 @@ bool besideFold(const Node& node, const FeatureIndex& features) {
 }
 
 OffCause causeOf(const Node& node, const FeatureIndex& features, const Snap& snap, const EnergyOptions& options) {
+    if (!node.index.closest(node.b, passage * node.h)) return OffCause::bridged;
     if (node.band.outside[node.n] != 0 && !node.index.closest(node.target, onTarget * node.h)) return OffCause::boxSide;
     const bool held = snap.kind != SnapKind::none;
     if (held && norm(node.target - node.b) <= onTarget * node.h) return OffCause::featureOff;
     if (sheetBetween(node)) return OffCause::sheetBetween;
     if (wayIsFree(node, held ? options.featureFloor : options.floor)) return OffCause::unfinished;
     if (held) return OffCause::feature;
-    if (const OffCause cause = bridged(node); cause != OffCause::none) return cause;
+    if (const OffCause cause = betweenLips(node); cause != OffCause::none) return cause;
     if (facesSheet(node)) return OffCause::gap;
     return besideFold(node, features) ? OffCause::besideEdge : OffCause::quality;
 }

@@ -144,6 +144,7 @@ MeshResult generate(const Options& options, Context& context) {
         throw Error(ErrorKind::internal, fmt::format("{} cells could not be made valid", repaired.remaining), "", "please report the case");
     }
     out.report = reportOf(c, options, context);
+    out.report.fitCutShort = fitted.cutShort;
     out.report.layers =
         LayerReport{options.layers.count, layers.meanCount, layers.facesCovered, layers.thicknessFraction};
     out.report.wallFaces = static_cast<std::int64_t>(front.ownerCell.size());

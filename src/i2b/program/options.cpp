@@ -156,6 +156,7 @@ std::vector<Problem> validate(const Options& options) {
     checkFeatures(options.geometry, check);
     check.within("clearance", options.fit.clearance, 0, 1);
     check.within("sweeps", options.fit.sweeps, 0, 100);
+    check.within("fit-seconds", options.fit.seconds, 0, 1e6);
     check.within("layers", options.layers.count, 0, 100);
     check.length("first-layer", options.layers.first, "from the room and the growth");
     check.within("growth", options.layers.growth, 0.5, 4);
