@@ -231,6 +231,17 @@ TEST(CaseFile, NamesFileLineAndKeyOfFeatures) {
     EXPECT_THAT(complaint("feature = 3"), HasSubstr("unknown key 'feature'"));
 }
 
+// The fit's keys stand in [fit] too, under shorter names; twice is once too often.
+TEST(CaseFile, FitTable) {
+    const Case table = parseCase("size = 1\n[fit]\nseconds = 60\nclearance = 0.2\nsweeps = 3\n", "car.toml");
+    EXPECT_EQ(table.options.fit.seconds, 60);
+    EXPECT_EQ(table.options.fit.clearance, 0.2);
+    EXPECT_EQ(table.options.fit.sweeps, 3);
+    EXPECT_EQ(table.lines.at("fit-seconds"), 3);
+    expectSame(parseCase("size = 1\nfit-seconds = 60\nclearance = 0.2\nsweeps = 3\n", "car.toml").options, table.options);
+    EXPECT_THAT(complaint("fit-seconds = 1\n[fit]\nseconds = 2"), HasSubstr("are the same"));
+}
+
 TEST(CaseFile, NamesFileLineAndKeyInTables) {
     EXPECT_THAT(complaint("[size]\nsurfac = 1"), AllOf(HasSubstr("car.toml:2, key size.surfac"), HasSubstr("write surface")));
     EXPECT_THAT(complaint("[size]\nsurface = 1\nlayers = 2"), AllOf(HasSubstr("car.toml:3"), HasSubstr("before the first table")));
