@@ -106,6 +106,7 @@ struct FitOptions {
     double clearance = 0.1;              // cell edges between a kept lattice vertex and the geometry
     int sweeps = 4;                      // of smoothing and projection
     bool features = true;                // snap to sharp edges and corners
+    double seconds = 0;                  // s, after which the fit begins no further sweep; 0: as many as it takes
     bool passages = true;                // keep cut cells whose centre has room too: nearer to walls, into passages
 };
 

@@ -87,6 +87,7 @@ void expectSame(const Options& a, const Options& b) {
     }
     EXPECT_EQ(a.fit.clearance, b.fit.clearance);
     EXPECT_EQ(a.fit.sweeps, b.fit.sweeps);
+    EXPECT_EQ(a.fit.seconds, b.fit.seconds);
     EXPECT_EQ(a.layers.count, b.layers.count);
     EXPECT_EQ(a.layers.first, b.layers.first);
     EXPECT_EQ(a.layers.growth, b.layers.growth);
@@ -260,6 +261,17 @@ TEST(CaseFile, ReadsLayersFromTheirTable) {
     EXPECT_THAT(complaint("[[layer.part]]\npart = 'a'\nfirst = 1"), AllOf(HasSubstr("car.toml:1"), HasSubstr("an entry is missing")));
     EXPECT_THAT(complaint("[[layer.part]]\npart = 'a'\ncount = 1\nheight = 1"), HasSubstr("unknown entry 'height'"));
     EXPECT_THAT(complaint("growth = 1\n[layer]\ngrowth = 2"), AllOf(HasSubstr("car.toml:3"), HasSubstr("line 1")));
+}
+
+// The fit's keys stand in [fit] too, under shorter names; twice is once too often.
+TEST(CaseFile, FitTable) {
+    const Case table = parseCase("size = 1\n[fit]\nseconds = 60\nclearance = 0.2\nsweeps = 3\n", "car.toml");
+    EXPECT_EQ(table.options.fit.seconds, 60);
+    EXPECT_EQ(table.options.fit.clearance, 0.2);
+    EXPECT_EQ(table.options.fit.sweeps, 3);
+    EXPECT_EQ(table.lines.at("fit-seconds"), 3);
+    expectSame(parseCase("size = 1\nfit-seconds = 60\nclearance = 0.2\nsweeps = 3\n", "car.toml").options, table.options);
+    EXPECT_THAT(complaint("fit-seconds = 1\n[fit]\nseconds = 2"), HasSubstr("are the same"));
 }
 
 TEST(CaseFile, NamesFileLineAndKeyInTables) {

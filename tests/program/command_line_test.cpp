@@ -87,7 +87,9 @@ TEST(CommandLine, SetsEveryOption) {
                                                "--clearance",
                                                "0.2",
                                                "--sweeps",
-                                               "6"});
+                                               "6",
+                                               "--fit-seconds",
+                                               "90"});
     const Options& o = line.given.options;
     EXPECT_EQ(line.command, Command::mesh);
     EXPECT_THAT(o.geometry.files, ElementsAre("a.stl", "b.obj"));
@@ -114,6 +116,7 @@ TEST(CommandLine, SetsEveryOption) {
     EXPECT_EQ(o.size.bufferCells, 4);
     EXPECT_EQ(o.fit.clearance, 0.2);
     EXPECT_EQ(o.fit.sweeps, 6);
+    EXPECT_EQ(o.fit.seconds, 90);
     EXPECT_TRUE(validate(o).empty());
 }
 

@@ -88,6 +88,7 @@ TEST(Validate, NamesEachBrokenOption) {
          }},
         {"clearance", [](Options& o) { o.fit.clearance = -0.1; }},
         {"sweeps", [](Options& o) { o.fit.sweeps = -1; }},
+        {"fit-seconds", [](Options& o) { o.fit.seconds = -1; }},
         {"layers", [](Options& o) { o.layers.count = 101; }},
         {"first-layer", [](Options& o) { o.layers.first = -1; }},
         {"growth", [](Options& o) { o.layers.growth = 0.4; }},

@@ -29,6 +29,10 @@ RunReport sample() {
     r.quality.emplace();
     r.quality->maxSkewness = 1.25;
     r.fit.emplace();
+    r.fitCutShort = true;
+    r.offGeometry.emplace();
+    r.offGeometry->counts[static_cast<std::size_t>(OffCause::gap)] = 3;
+    r.offGeometry->places = {1, {{3, {1, 2, 3}, {{1, 2, 3}, {1, 2, 3}}, 0.5, {1, 2, 3}, OffCause::gap, "body"}}};
     r.layers = LayerReport{3, 2.5, 1, 0.99, 2e-3, 1e-3, 3e-3, {{"body", 3, 1e-3, 4e-3, 2.5, 2e-3, 3e-3, 6, {3, 2, 1, 0}}}};
     r.patches = {{"body", "wall", 5, 6}};
     r.regions.resize(1);
@@ -59,7 +63,20 @@ TEST(ReportWrite, HasTheContractsKeys) {
     EXPECT_THAT(keys(json["fit"]), testing::ElementsAre("wall_nodes_on_geometry_fraction",
                                                         "mean_distance_in_h", "max_distance_in_h",
                                                         "feature_capture_fraction", "tilted_face_fraction",
-                                                        "tilted_45_face_fraction", "part_border_fraction", "part_border_samples"));
+                                                        "tilted_45_face_fraction", "part_border_fraction", "part_border_samples",
+                                                        "cut_short", "off_geometry"));
+    const Json& off = json["fit"]["off_geometry"];
+    EXPECT_THAT(keys(off), testing::ElementsAre("nodes", "fraction", "causes", "places_total", "places", "tilted_nodes",
+                                                "tilted_places_total", "tilted_places"));
+    EXPECT_THAT(keys(off["causes"]), testing::ElementsAre("quality", "beside_edge", "feature", "feature_off", "gap", "bridged",
+                                                          "sheet_between", "box_side", "unfinished", "retreated"));
+    EXPECT_THAT(keys(off["places"][0]),
+                testing::ElementsAre("nodes", "cause", "part", "centre", "box", "max_distance_in_h", "farthest"));
+    EXPECT_EQ(off["causes"]["gap"], 3);
+    EXPECT_EQ(off["places"][0]["cause"], "gap");
+    EXPECT_EQ(off["places"][0]["part"], "body");
+    EXPECT_EQ(off["places_total"], 1);
+    EXPECT_EQ(json["fit"]["cut_short"], true);
     EXPECT_THAT(keys(json["layers"]), testing::ElementsAre("requested", "mean_count",
                                                            "faces_covered_fraction", "thickness_fraction",
                                                            "mean_first_height", "min_first_height", "max_first_height", "parts"));

@@ -41,6 +41,8 @@ if path.endswith('.vtu'):
     out['faces'] = [g.GetCell(i).GetNumberOfFaces() for i in range(min(100, g.GetNumberOfCells()))]
     d = g.GetCellData()
     out['data'] = {d.GetArrayName(i): column(d.GetArray(i)) for i in range(d.GetNumberOfArrays())}
+    d = g.GetPointData()
+    out['pointData'] = {d.GetArrayName(i): column(d.GetArray(i)) for i in range(d.GetNumberOfArrays())}
 else:
     t = vtkTriangleFilter()
     t.SetInputData(g)
@@ -148,6 +150,36 @@ TEST(VtuWrite, VtkReadsBackWhatWasWritten) {
     }
 }
 
+// Values of a few points come back as one value a point, 0 where none was given, over many blocks.
+TEST(VtuWrite, ValuesOfSomePoints) {
+    if (!hasVtk()) GTEST_SKIP() << "python3-vtk9 is not installed";
+    const TempFolder temp;
+    const PolyMesh mesh = test::boxMesh({80, 30, 27}); // more points than one block holds
+    std::vector<std::int32_t> points;
+    std::vector<float> distance;
+    std::vector<std::uint8_t> cause;
+    std::vector<double> expected(mesh.points.size(), 0), expectedCause(mesh.points.size(), 0);
+    for (std::size_t p = 7; p < mesh.points.size(); p += 1000) {
+        points.push_back(static_cast<std::int32_t>(p));
+        distance.push_back(0.25f * static_cast<float>(points.size()));
+        cause.push_back(static_cast<std::uint8_t>(points.size() % 10));
+        expected[p] = double(distance.back());
+        expectedCause[p] = cause.back();
+    }
+    const std::vector<PointData> values{{"off_geometry", points, std::span<const float>(distance)},
+                                        {"off_cause", points, std::span<const std::uint8_t>(cause)}};
+    for (const bool compress : {true, false}) {
+        writeVtu(mesh, {}, temp / "mesh.vtu", {.compress = compress}, Context(), values);
+        const auto read = readBack(temp / "mesh.vtu");
+        EXPECT_EQ(read["pointData"]["off_geometry"].get<std::vector<double>>(), expected);
+        EXPECT_EQ(read["pointData"]["off_cause"].get<std::vector<double>>(), expectedCause);
+        EXPECT_EQ(read["cells"], 64800);
+    }
+    distance.pop_back();
+    const std::vector<PointData> shorter{{"off_geometry", points, std::span<const float>(distance)}};
+    EXPECT_THROW(writeVtu(mesh, {}, temp / "short.vtu", {}, Context(), shorter), Error);
+}
+
 // Lists that run across many compressed blocks come back whole, hexahedra and polyhedra mixed.
 TEST(VtuWrite, ManyBlocks) {
     if (!hasVtk()) GTEST_SKIP() << "python3-vtk9 is not installed";
@@ -207,6 +239,30 @@ TEST(PlyWrite, WallPolygonsWithParts) {
     const auto read = readBack(temp / "wall.ply");
     EXPECT_EQ(read["cells"], mesh.faces() - mesh.internalFaces());
     EXPECT_NEAR(read["volume"].get<double>(), -3, 1e-6); // a solid around the fluid: normals inwards
+}
+
+// Values of points are properties of the vertices, in the order given; VTK still reads the surface.
+TEST(PlyWrite, ValuesOfPoints) {
+    const TempFolder temp;
+    const PolyMesh mesh = test::zooMesh();
+    const std::vector<std::int32_t> points{0, 17};
+    const std::vector<float> distance{0.5f, 1.5f};
+    const std::vector<std::uint8_t> cause{3, 4};
+    writePly(mesh, temp / "wall.ply", Context(), {},
+             {{"off_geometry", points, std::span(distance)}, {"off_cause", points, std::span(cause)}});
+    const std::string text = contents(temp / "wall.ply");
+    EXPECT_THAT(text, testing::HasSubstr("property double z\nproperty float off_geometry\nproperty uchar off_cause\nelement face"));
+    const std::size_t start = text.find("end_header\n") + 11;
+    for (std::size_t v = 0; v < 18; ++v) {
+        float d = -1;
+        std::memcpy(&d, text.data() + start + 29 * v + 24, sizeof d);
+        const auto c = static_cast<int>(static_cast<unsigned char>(text[start + 29 * v + 28]));
+        EXPECT_EQ(d, v == 0 ? 0.5f : v == 17 ? 1.5f : 0.0f);
+        EXPECT_EQ(c, v == 0 ? 3 : v == 17 ? 4 : 0);
+    }
+    if (!hasVtk()) GTEST_SKIP() << "python3-vtk9 is not installed";
+    const auto read = readBack(temp / "wall.ply");
+    EXPECT_NEAR(read["volume"].get<double>(), -3, 1e-6);
 }
 
 // Two patches by name: points are shared, parts numbered in the order of the patches.

@@ -179,7 +179,7 @@ std::vector<std::int32_t> colourNodes(const Band& band, const std::vector<std::u
     return colour;
 }
 
-void minimiseEnergy(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Snap>& snaps,
+bool minimiseEnergy(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Snap>& snaps,
                     const std::vector<std::uint8_t>& active, std::vector<Vec3>& x, const EnergyOptions& options, const Context& context) {
     std::int32_t colours = 0;
     const std::vector<std::int32_t> colour = colourNodes(band, active, colours);
@@ -190,6 +190,7 @@ void minimiseEnergy(const Band& band, const SurfaceIndex& index, const FeatureIn
     std::vector<Floor> floors(band.walls);
     for (double lambda : options.wallWeights) {
         context.checkCancelled();
+        if (options.budget.isOver()) return false;
         for (const std::vector<std::uint32_t>& group : nodes) {
             parallelChunks(group.size(), 128, [&](std::size_t begin, std::size_t end, std::size_t) {
                 LocalCorners corners;
@@ -216,6 +217,7 @@ void minimiseEnergy(const Band& band, const SurfaceIndex& index, const FeatureIn
             });
         }
     }
+    return true;
 }
 
 } // namespace i2b

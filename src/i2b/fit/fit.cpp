@@ -2,6 +2,7 @@
 #include "i2b/core/parallel.h"
 #include "i2b/fit/corner.h"
 #include "i2b/fit/insert.h"
+#include "i2b/fit/off_wall.h"
 #include <algorithm>
 
 namespace i2b {
@@ -77,6 +78,8 @@ void activateSnapped(const Band& band, const std::vector<Snap>& snaps, std::vect
 FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& index, const FeatureGraph& graph,
                     const FitOptions& options, const Context& context) {
     FitSummary summary;
+    EnergyOptions energy;
+    energy.budget = Budget(options.seconds);
     Band band = buildBand(mesh, front, rings);
     summary.wallNodes = band.walls;
     context.checkCancelled();
@@ -90,14 +93,14 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     const FeatureIndex features(graph);
     std::vector<Snap> snaps(band.walls);
     std::vector<std::uint8_t> active = activeNodes(band, index, x);
-    EnergyOptions energy;
     const auto pull = [&](std::vector<double> weights) {
         energy.wallWeights = std::move(weights);
-        minimiseEnergy(band, index, features, snaps, active, x, energy, context);
+        if (!minimiseEnergy(band, index, features, snaps, active, x, energy, context)) summary.cutShort = true;
     };
+    const auto seekFeatures = [&] { return options.features && !energy.budget.isOver(); };
     pull({0.1, 10, 100});
     active = activeNodes(band, index, x);
-    if (options.features) {
+    if (seekFeatures()) {
         snapToFeatures(band, front, index, features, x, snaps);
         activateSnapped(band, snaps, active);
     }
@@ -111,12 +114,13 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
         if (split > 0) renewPrisms(band, front);
         activateSnapped(band, snaps, active);
     };
-    if (options.features) snapAndSplit();
+    if (seekFeatures()) snapAndSplit();
     pull({1e5});
-    if (options.features) snapAndSplit(); // what has come into view since
+    if (seekFeatures()) snapAndSplit(); // what has come into view since
     pull({1e6});
     if (options.features) releaseUnreached(band, index, features, x, snaps);
     snapExactly(band, index, features, snaps, x, energy);
+    summary.offCauses = findOffCauses(band, index, features, snaps, x, energy);
     for (const Snap& s : snaps) summary.snapped += s.kind != SnapKind::none;
     for (std::uint8_t a : active) summary.active += a;
     store(band, x, front);

@@ -7,7 +7,9 @@
 #pragma once
 #include "i2b/core/context.h"
 #include "i2b/fit/band.h"
+#include "i2b/fit/budget.h"
 #include "i2b/fit/features.h"
+#include "i2b/fit/off_cause.h"
 #include "i2b/geometry/features.h"
 #include "i2b/geometry/surface_index.h"
 #include "i2b/options.h"
@@ -26,9 +28,12 @@ struct FitSummary {
     std::vector<Snap> snaps;      // per wall node: what it is held to
     std::vector<Snap> wishes;     // per wall node: what it should be held to besides, but could not be brought to
     std::size_t inserted = 0;     // vertices put where an edge crosses one
+    bool cutShort = false;        // by options.seconds: sweeps were left out, and another run may end elsewhere
+    std::vector<OffCause> offCauses; // per wall node: why it is off the geometry; none where it is within offInterest (off_wall.h)
 };
 
-// Moves the front's vertices (front and wall positions, movedPoints). Every corner stays positive.
+// Moves the front's vertices (front and wall positions, movedPoints). Every corner stays positive. Once options.seconds
+// are over no further sweep of the energy begins and no further features are looked for; the exact snap is always done.
 FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& index, const FeatureGraph& features,
                     const FitOptions& options, const Context& context);
 
@@ -71,9 +76,10 @@ struct EnergyOptions {
     double floor = 0.03;          // scaled Jacobian below which the wall pulls less
     double featureFloor = 0.01;   // the same for nodes snapped to features
     double cap = 0.3;             // of h: longest step
+    Budget budget;                // of time: asked before each sweep
 };
-// Gauss-Seidel over a colouring of the active nodes. active: per movable node.
-void minimiseEnergy(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Snap>& snaps,
+// Gauss-Seidel over a colouring of the active nodes. active: per movable node. Gives whether all sweeps were within the budget.
+bool minimiseEnergy(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Snap>& snaps,
                     const std::vector<std::uint8_t>& active, std::vector<Vec3>& x, const EnergyOptions& options, const Context& context);
 
 // Moves wall nodes the whole, half or a quarter of the way to their targets where the corners stay good.

@@ -136,6 +136,7 @@ MeshResult generate(const Options& options, Context& context) {
         throw Error(ErrorKind::internal, fmt::format("{} cells could not be made valid", repaired.remaining), "", "please report the case");
     }
     out.report = reportOf(c, options, context);
+    out.report.fitCutShort = fitted.cutShort;
     out.walls = measureLayers(front, layers);
     out.report.layers = summarize(out.walls, front, c.surface.parts, options.layers.count);
     out.walls.askedFirst = {}, out.walls.askedThickness = {}; // the report has them
@@ -147,7 +148,14 @@ MeshResult generate(const Options& options, Context& context) {
         context, "quality", [&] { return measureQuality(out.mesh); },
         [](const QualityReport& q) { return q.cells; });
     out.report.fit = stage(
-        context, "fit quality", [&] { return measureFit(out.mesh, *c.index, features); },
+        context, "fit quality",
+        [&] {
+            const FitReport fit = measureFit(out.mesh, *c.index, features, {}, &out.wallNodes);
+            // Wall points follow each other as the vertices of the front do.
+            out.offCauses = settleCauses(out.wallNodes, fitted.offCauses, repaired.retreatedWalls);
+            out.report.offGeometry = listOffPlaces(out.mesh, out.wallNodes, out.offCauses, *c.index);
+            return fit;
+        },
         [](const FitReport& f) { return f.wallNodes; });
     out.report.stages = context.stages();
     out.report.cells = out.mesh.cells;

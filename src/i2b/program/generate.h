@@ -32,6 +32,8 @@ struct MeshResult {
     std::unique_ptr<GridResult> cartesian;
     PolyMesh mesh;
     WallLayers walls; // wallCell: of the mesh
+    WallNodes wallNodes;            // how far each is off the geometry
+    std::vector<OffCause> offCauses; // and why; as wallNodes.points
     RunReport report; // all but the total time and memory, which the caller knows at its end
 };
 

@@ -208,6 +208,7 @@ std::vector<Problem> validate(const Options& options) {
     checkFeatures(options.geometry, check);
     check.within("clearance", options.fit.clearance, 0, 1);
     check.within("sweeps", options.fit.sweeps, 0, 100);
+    check.within("fit-seconds", options.fit.seconds, 0, 1e6);
     checkLayers(options.layers, check);
     checkOutput(options.output, check);
     check.within("threads", options.threads, 0, 4096);

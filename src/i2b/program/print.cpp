@@ -32,6 +32,19 @@ std::string regionLine(const Region& region, const std::vector<ReportPart>& part
                        region.seed.x, region.seed.y, region.seed.z, partNames(region, parts));
 }
 
+// One line: how many places are off the geometry, and the first three, which are the worst.
+std::string offGeometryLine(const OffPlaces& places) {
+    constexpr std::size_t most = 3;
+    std::vector<std::string> worst;
+    for (const OffPlace& p : places.first) {
+        if (worst.size() == most) break;
+        worst.push_back(fmt::format("{} node{} at ({:.4g} {:.4g} {:.4g}) on {}, up to {:.2g} h, {}", p.nodes, p.nodes == 1 ? "" : "s", p.farthest.x,
+                                    p.farthest.y, p.farthest.z, p.part, p.farthestInH, nameOf(p.cause)));
+    }
+    return fmt::format("{} place{} where the wall is over 0.01 h off: {}{}\n", places.total, places.total == 1 ? "" : "s",
+                       fmt::join(worst, "; "), places.total > static_cast<std::int64_t>(worst.size()) ? "; ..." : "");
+}
+
 } // namespace
 
 std::string fitText(const FitReport& fit) {
@@ -90,6 +103,8 @@ std::string summaryText(const RunReport& report) {
         text += fmt::format(
             "fit: {:.2f} % of the wall nodes on the geometry, {:.1f} % of the sharp edges captured\n",
             100 * f->wallNodesOnGeometryFraction, 100 * f->featureCaptureFraction);
+    if (report.offGeometry && report.offGeometry->places.total > 0) text += offGeometryLine(report.offGeometry->places);
+    if (report.fitCutShort) text += "the fit was cut short by --fit-seconds: another run may give another mesh\n";
     if (const auto& l = report.layers)
         text += fmt::format(
             "layers: {:.2f} of {} on average, {:.1f} % of the faces covered, {:.1f} % of the thickness; first height {:.3g} m\n",

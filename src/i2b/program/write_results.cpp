@@ -30,8 +30,9 @@ std::vector<CellData> layerData(const WallLayers& walls) {
             data("firstLayerHeight", walls.first), data("layerThickness", walls.thickness)};
 }
 
-void writeMeshFiles(const PolyMesh& mesh, const WallLayers& walls, const OutputOptions& output, AtomicFolder& folder,
+void writeMeshFiles(const MeshResult& result, const OutputOptions& output, AtomicFolder& folder,
                     Context& context) {
+    const PolyMesh& mesh = result.mesh;
     Stage stage(context, "write");
     stage.items = static_cast<std::uint64_t>(mesh.cells);
     if (wants(output, "openfoam")) {
@@ -40,15 +41,20 @@ void writeMeshFiles(const PolyMesh& mesh, const WallLayers& walls, const OutputO
         options.note = "i2b " I2B_VERSION;
         writeFoam(mesh, folder, options, context);
     }
+    static_assert(sizeof(OffCause) == 1);
+    const std::vector<float> off(result.wallNodes.distanceInH.begin(), result.wallNodes.distanceInH.end());
+    const auto* const causes = reinterpret_cast<const std::uint8_t*>(result.offCauses.data());
+    const std::vector<PointData> values{{"off_geometry", result.wallNodes.points, std::span<const float>(off)},
+                                        {"off_cause", result.wallNodes.points, std::span(causes, result.offCauses.size())}};
     if (wants(output, "vtu")) {
         CellQuality q = measureCellQuality(mesh);
-        std::vector<CellData> data = layerData(walls);
+        std::vector<CellData> data = layerData(result.walls);
         data.push_back({"nonOrthogonality", std::move(q.nonOrthogonality)});
         data.push_back({"skewness", std::move(q.skewness)});
         data.push_back({"volume", std::move(q.volume)});
-        writeVtu(mesh, data, folder.place("mesh.vtu"), {}, context);
+        writeVtu(mesh, data, folder.place("mesh.vtu"), {}, context, values);
     }
-    if (wants(output, "ply")) writePly(mesh, folder.place("wall.ply"), context);
+    if (wants(output, "ply")) writePly(mesh, folder.place("wall.ply"), context, {}, values);
 }
 
 void writeGridFile(const GridResult& result, const RunReport& report, const Options& options, AtomicFolder& folder,
@@ -81,8 +87,8 @@ void writeReportFile(RunReport& report, const OutputOptions& output, AtomicFolde
 void writeMeshResults(MeshResult& result, const Options& options, Context& context,
                       const CompleteReport& complete) {
     AtomicFolder folder(options.output.folder);
-    writeMeshFiles(result.mesh, result.walls, options.output, folder, context);
-    result.mesh = {}, result.walls = {}; // on the disk by now
+    writeMeshFiles(result, options.output, folder, context);
+    result.mesh = {}, result.walls = {}, result.wallNodes = {}, result.offCauses = {}; // on the disk by now
     returnFreedMemory();
     writeGridFile(*result.cartesian, result.report, options, folder, context);
     writeReportFile(result.report, options.output, folder, complete);

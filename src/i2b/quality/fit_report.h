@@ -36,11 +36,20 @@ struct FitReport {
     Vec3 farthest; // m, the wall node of maxDistanceInH
 };
 
+inline constexpr double onGeometry = 0.01; // of h: a node within is on the geometry
+
+// What was measured of each wall node.
+struct WallNodes {
+    std::vector<std::int32_t> points;  // of the mesh, ascending
+    std::vector<double> distanceInH;   // to the geometry
+    std::vector<std::uint8_t> tilted;  // 1: a wall face at it is tilted by over 45 degrees
+};
+
 // Of the mesh's wall patches: those named, or all patches of type wall. features must have been built with an
 // angle of at most 40 degrees for the last figures to mean what is said above; all is the same on any number
-// of threads.
+// of threads. nodes: filled where given and there is something to measure.
 FitReport measureFit(const PolyMesh& mesh, const SurfaceIndex& index, const FeatureGraph& features,
-                     const std::vector<std::string>& patches = {});
+                     const std::vector<std::string>& patches = {}, WallNodes* nodes = nullptr);
 
 // The last two figures. Four samples an edge; at 0.1 h to either side of it the nearest part must be that of the patch
 // there, h being the mean of the edge's own and its faces' sizes (square roots of areas).

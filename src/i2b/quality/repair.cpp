@@ -255,6 +255,16 @@ void retreatFromFaults(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults
     summary.remaining = static_cast<std::int64_t>(bad.size());
 }
 
+std::vector<Vec3> wallPositions(const Front& front) {
+    std::vector<Vec3> positions;
+    positions.reserve(front.front.size());
+    for (auto v : front.mesh.vertices()) {
+        const auto& p = front.mesh.point(v);
+        positions.push_back({p[0], p[1], p[2]});
+    }
+    return positions;
+}
+
 } // namespace
 
 RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, const LayerStack& layers, double startThickness,
@@ -268,6 +278,7 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, c
     faults.poorCells(poor);
     summary.badCells = static_cast<std::int64_t>(faults.badCells().size());
     summary.poorFaces = poor.all;
+    const std::vector<Vec3> before = wallPositions(front);
     Optimiser optimiser(mesh, cellFaces, faults, front, layers, guide);
     if (summary.badCells > 0 || summary.poorFaces > 0) {
         summary.moves += optimiser.mend(mendSweeps);
@@ -284,6 +295,8 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, c
     summary.moves += optimiser.pullIn(pullSweeps);
     faults.poorCells(poor);
     summary.poorRemaining = poor.all;
+    const std::vector<Vec3> after = wallPositions(front);
+    for (std::size_t v = 0; v < after.size(); ++v) summary.retreatedWalls.push_back(!(after[v] == before[v]));
     return summary;
 }
 

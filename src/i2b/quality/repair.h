@@ -6,6 +6,7 @@
 #pragma once
 #include "i2b/quality/optimise.h"
 #include <cstdint>
+#include <vector>
 
 namespace i2b {
 
@@ -18,6 +19,7 @@ struct RepairSummary {
     std::int64_t poorFaces = 0;  // faces over the limits of non-orthogonality, skewness, weight or volume ratio at the
                                  // beginning, and cells of small determinant
     std::int64_t poorRemaining = 0;
+    std::vector<std::uint8_t> retreatedWalls; // per vertex of the front: its wall position was changed
 };
 
 // startThickness: what buildFront() was given. Moves points of mesh, and front positions alike.

@@ -50,24 +50,41 @@ void append(std::string& out, T value) {
     out.append(bytes, sizeof value);
 }
 
-std::string header(const Wall& wall) {
+std::string header(const Wall& wall, const std::vector<PointData>& values) {
+    std::string properties;
+    for (const PointData& data : values)
+        properties += fmt::format("property {} {}\n", std::holds_alternative<std::span<const float>>(data.values) ? "float" : "uchar", data.name);
     return fmt::format(
         "ply\nformat binary_little_endian 1.0\n{}element vertex {}\nproperty double x\nproperty double y\n"
-        "property double z\nelement face {}\nproperty list {} int vertex_indices\nproperty int "
+        "property double z\n{}element face {}\nproperty list {} int vertex_indices\nproperty int "
         "part\nend_header\n",
-        wall.comments, wall.points.size(), wall.faces.size(), wall.widest < 256 ? "uchar" : "uint");
+        wall.comments, wall.points.size(), properties, wall.faces.size(), wall.widest < 256 ? "uchar" : "uint");
+}
+
+// Of one point, which may have none.
+void appendValue(std::string& out, const PointData& data, std::int32_t point) {
+    const auto at = std::lower_bound(data.points.begin(), data.points.end(), point);
+    const bool found = at != data.points.end() && *at == point;
+    std::visit(
+        [&](const auto& values) {
+            using T = std::remove_const_t<typename std::decay_t<decltype(values)>::element_type>;
+            append(out, found ? values[static_cast<std::size_t>(at - data.points.begin())] : T(0));
+        },
+        data.values);
 }
 
 } // namespace
 
 void writePly(const PolyMesh& mesh, const std::filesystem::path& path, const Context& context,
-              const std::vector<std::string>& patches) {
+              const std::vector<std::string>& patches, const std::vector<PointData>& values) {
     const Wall wall = collect(mesh, patches);
     OutputFile file(path);
-    file.write(header(wall));
+    file.write(header(wall, values));
     const auto points = [&](std::size_t begin, std::size_t end, std::string& out) {
-        for (std::size_t i = begin; i < end; ++i)
+        for (std::size_t i = begin; i < end; ++i) {
             append(out, mesh.points[static_cast<std::size_t>(wall.points[i])]);
+            for (const PointData& data : values) appendValue(out, data, wall.points[i]);
+        }
     };
     writeBlocks(file, wall.points.size(), 16384, points, context);
     const auto faces = [&](std::size_t begin, std::size_t end, std::string& out) {

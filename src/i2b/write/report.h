@@ -4,6 +4,7 @@
 #include "i2b/layers/layer_report.h"
 #include "i2b/paint/regions.h"
 #include "i2b/quality/fit_report.h"
+#include "i2b/quality/off_places.h"
 #include "i2b/quality/quality_report.h"
 #include <cstdint>
 #include <optional>
@@ -32,6 +33,8 @@ struct RunReport {
     // Absent where the run stopped before: written as null.
     std::optional<QualityReport> quality;
     std::optional<FitReport> fit;
+    std::optional<OffGeometry> offGeometry; // only beside fit
+    bool fitCutShort = false;               // by its budget of time: another run may give another mesh
     std::optional<LayerReport> layers;
     std::vector<Patch> patches;
     std::vector<Region> regions;

@@ -51,6 +51,35 @@ Json layerRowJson(const LayerRow& row) {
             {"faces_short", shorter}};
 }
 
+Json offPlaceJson(const OffPlace& p) {
+    return {{"nodes", p.nodes},
+            {"cause", nameOf(p.cause)},
+            {"part", p.part},
+            {"centre", place(p.centre)},
+            {"box", Json::array({place(p.box.lo), place(p.box.hi)})},
+            {"max_distance_in_h", number(p.farthestInH)},
+            {"farthest", place(p.farthest)}};
+}
+
+Json offPlacesJson(const OffPlaces& places) {
+    Json list = Json::array();
+    for (const OffPlace& p : places.first) list.push_back(offPlaceJson(p));
+    return list;
+}
+
+Json offGeometryJson(const OffGeometry& off) {
+    Json causes = Json::object();
+    for (std::size_t i = 1; i < static_cast<std::size_t>(OffCause::tilted); ++i) causes[nameOf(static_cast<OffCause>(i))] = off.counts[i];
+    return {{"nodes", off.nodes},
+            {"fraction", number(off.fraction)},
+            {"causes", causes},
+            {"places_total", off.places.total},
+            {"places", offPlacesJson(off.places)},
+            {"tilted_nodes", off.tilted},
+            {"tilted_places_total", off.tiltedPlaces.total},
+            {"tilted_places", offPlacesJson(off.tiltedPlaces)}};
+}
+
 Json layersJson(const LayerReport& l) {
     Json parts = Json::array();
     for (const LayerRow& row : l.parts) parts.push_back(layerRowJson(row));
@@ -117,6 +146,8 @@ std::string reportText(const RunReport& r) {
     json["wall_faces"] = r.wallFaces;
     json["quality"] = r.quality ? qualityJson(*r.quality) : Json(nullptr);
     json["fit"] = r.fit ? fitJson(*r.fit) : Json(nullptr);
+    if (r.fit) json["fit"]["cut_short"] = r.fitCutShort;
+    if (r.fit) json["fit"]["off_geometry"] = r.offGeometry ? offGeometryJson(*r.offGeometry) : Json(nullptr);
     json["layers"] = r.layers ? layersJson(*r.layers) : Json(nullptr);
     json["patches"] = patches;
     json["regions"] = regions;

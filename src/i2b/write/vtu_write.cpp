@@ -298,14 +298,31 @@ void writeGroup(OutputFile& file, const char* name, std::span<Array> arrays) {
     file.write(fmt::format("      </{}>\n", name));
 }
 
-// Values of some cells, 0 in all others. Keeps references.
-Array sparseArray(const std::string& name, const std::vector<std::int32_t>& cells, const std::vector<float>& values, std::size_t all) {
-    return {attributes<float>(name), all, sizeof(float), [&](std::size_t begin, std::size_t end, char* out) {
-                std::memset(out, 0, (end - begin) * sizeof(float));
-                auto at = std::lower_bound(cells.begin(), cells.end(), static_cast<std::int32_t>(begin));
-                for (; at != cells.end() && static_cast<std::size_t>(*at) < end; ++at)
-                    std::memcpy(out + (static_cast<std::size_t>(*at) - begin) * sizeof(float), &values[static_cast<std::size_t>(at - cells.begin())], sizeof(float));
+// Values of some cells or points, 0 at all others. Keeps references.
+template <class T>
+Array sparseArray(const std::string& name, std::span<const std::int32_t> items, std::span<const T> values, std::size_t all) {
+    return {attributes<T>(name), all, sizeof(T), [items, values](std::size_t begin, std::size_t end, char* out) {
+                std::memset(out, 0, (end - begin) * sizeof(T));
+                auto at = std::lower_bound(items.begin(), items.end(), static_cast<std::int32_t>(begin));
+                for (; at != items.end() && static_cast<std::size_t>(*at) < end; ++at) {
+                    const T value = values[static_cast<std::size_t>(at - items.begin())];
+                    std::memcpy(out + (static_cast<std::size_t>(*at) - begin) * sizeof(T), &value, sizeof value);
+                }
             }};
+}
+
+std::vector<Array> pointArrays(const PolyMesh& mesh, const std::vector<PointData>& data) {
+    std::vector<Array> arrays;
+    for (const PointData& d : data) {
+        std::visit(
+            [&](const auto& values) {
+                if (values.size() != d.points.size())
+                    throw Error(ErrorKind::internal, fmt::format("point data '{}' has {} values for {} points", d.name, values.size(), d.points.size()), "", "");
+                arrays.push_back(sparseArray(d.name, std::span(d.points), std::span(values), mesh.points.size()));
+            },
+            d.values);
+    }
+    return arrays;
 }
 
 std::vector<Array> cellArrays(const PolyMesh& mesh, const std::vector<CellData>& data,
@@ -317,7 +334,7 @@ std::vector<Array> cellArrays(const PolyMesh& mesh, const std::vector<CellData>&
     arrays.push_back(plainArray<std::int32_t>("patch", walls));
     for (const CellData& d : data)
         arrays.push_back(d.cells && d.cells->size() == d.values.size()
-                             ? sparseArray(d.name, *d.cells, d.values, static_cast<std::size_t>(mesh.cells))
+                             ? sparseArray(d.name, std::span(*d.cells), std::span(d.values), static_cast<std::size_t>(mesh.cells))
                              : plainArray<float>(d.name, d.values));
     for (const Array& array : arrays)
         if (array.elements != static_cast<std::size_t>(mesh.cells))
@@ -329,9 +346,9 @@ std::vector<Array> cellArrays(const PolyMesh& mesh, const std::vector<CellData>&
 } // namespace
 
 void writeVtu(const PolyMesh& mesh, const std::vector<CellData>& data, const std::filesystem::path& path,
-              const VtuWriteOptions& options, const Context& context) {
+              const VtuWriteOptions& options, const Context& context, const std::vector<PointData>& values) {
     const std::vector<std::int32_t> walls = wallPatches(mesh);
-    std::vector<Array> cellData = cellArrays(mesh, data, walls);
+    std::vector<Array> cellData = cellArrays(mesh, data, walls), pointData = pointArrays(mesh, values);
     const CellTable table = buildCellTable(mesh);
     context.checkCancelled();
     Array points = plainArray<double>("Points", {&mesh.points.data()->x, 3 * mesh.points.size()});
@@ -351,11 +368,13 @@ void writeVtu(const PolyMesh& mesh, const std::vector<CellData>& data, const std
                            options.compress ? " compressor=\"vtkZLibDataCompressor\"" : ""));
     file.write(fmt::format("  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
                            mesh.points.size(), mesh.cells));
+    if (!pointData.empty()) writeGroup(file, "PointData", pointData);
     writeGroup(file, "CellData", cellData);
     writeGroup(file, "Points", {&points, 1});
     writeGroup(file, "Cells", cells);
     file.write("    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n   _");
     Appender appender(file, options, context);
+    for (const Array& array : pointData) appender.append(array);
     for (const Array& array : cellData) appender.append(array);
     appender.append(points);
     for (const Array& array : cells) appender.append(array);

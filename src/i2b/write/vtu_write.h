@@ -5,6 +5,7 @@
 #pragma once
 #include "i2b/assemble/poly_mesh.h"
 #include "i2b/core/context.h"
+#include "i2b/write/point_data.h"
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -24,9 +25,9 @@ struct VtuWriteOptions {
 };
 
 // Cell data written: level, layer, region (where the mesh has them), patch (number of the first wall patch
-// the cell lies at, else -1), then `data`. Throws Error{input} (unwritable, disk full), Error{internal} (data
+// the cell lies at, else -1), then `data`; point data: `points`. Throws Error{input} (unwritable, disk full), Error{internal} (data
 // of the wrong length) and Cancelled.
 void writeVtu(const PolyMesh& mesh, const std::vector<CellData>& data, const std::filesystem::path& path,
-              const VtuWriteOptions& options, const Context& context);
+              const VtuWriteOptions& options, const Context& context, const std::vector<PointData>& points = {});
 
 } // namespace i2b

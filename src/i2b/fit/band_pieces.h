@@ -1,0 +1,42 @@
+// What single cells and prisms contribute to the band: corners, edges, hanging nodes.
+#pragma once
+#include "i2b/fit/band.h"
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace i2b {
+
+inline constexpr double prismHeight = 0.7; // of h: what the energy and the Laplacian tend to
+
+using Hanging = std::pair<std::int32_t, std::array<std::int32_t, 4>>; // a node and its parents, -1 filled
+inline bool sameNode(const Hanging& a, const Hanging& b) { return a.first == b.first; }
+
+// An edge between two nodes, either end first.
+constexpr std::uint64_t edgeKey(std::int32_t a, std::int32_t b) { return std::uint64_t(std::uint32_t(a)) << 32 | std::uint32_t(b); }
+
+// What some cells contribute.
+struct BandPieces {
+    std::vector<Corner> corners;
+    std::vector<std::uint64_t> edges; // the lower node first
+    std::vector<Hanging> hanging;
+
+    // Four cells share an edge: what is alike goes before the pieces are put together.
+    void settle();
+};
+
+// A core cell's vertices with their neighbours along its edges: six slots, 2 * axis (+ 1 for the positive direction).
+struct CellVertex {
+    std::int32_t node = -1;
+    std::array<std::int32_t, 6> next{-1, -1, -1, -1, -1, -1};
+};
+
+// band: nodes numbered and placed. nodeOf: per point of the lattice mesh its node; vertices: room to work in.
+void addCoreCell(const Band& band, LatticeMesh::Reader& reader, int level, const Index3& c,
+                 const std::vector<std::int32_t>& nodeOf, std::vector<CellVertex>& vertices, BandPieces& out);
+
+// The prism on face f of the front.
+void addPrism(const Band& band, const Front& front, std::size_t f, BandPieces& out);
+
+} // namespace i2b

@@ -1,0 +1,47 @@
+#include "i2b/program/print.h"
+#include <gmock/gmock.h>
+
+namespace i2b {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+RunReport sample() {
+    RunReport report;
+    report.fit.emplace();
+    report.offGeometry.emplace();
+    return report;
+}
+
+// How many places, then the first three with number, place, part, distance and cause.
+TEST(SummaryText, NamesTheWorstPlaces) {
+    RunReport report = sample();
+    OffPlaces& places = report.offGeometry->places;
+    for (int i = 0; i < 4; ++i) {
+        OffPlace& p = places.first.emplace_back();
+        p.nodes = 4 - i;
+        p.farthest = {1.5, double(i), -2};
+        p.farthestInH = 0.25;
+        p.cause = OffCause::sheetBetween;
+        p.part = "part" + std::to_string(i);
+    }
+    places.total = 7;
+    EXPECT_THAT(summaryText(report), HasSubstr("\n7 places where the wall is over 0.01 h off: 4 nodes at (1.5 0 -2) on part0, up to 0.25 h, "
+                                               "sheet_between; 3 nodes at (1.5 1 -2) on part1, up to 0.25 h, sheet_between; "
+                                               "2 nodes at (1.5 2 -2) on part2, up to 0.25 h, sheet_between; ...\n"));
+    places.first.resize(1), places.first[0].nodes = 1, places.total = 1;
+    EXPECT_THAT(summaryText(report), HasSubstr("\n1 place where the wall is over 0.01 h off: 1 node at (1.5 0 -2) on part0, up to 0.25 h, sheet_between\n"));
+}
+
+// Nothing is said where there is nothing to say.
+TEST(SummaryText, SaysNothingOfAGoodWall) {
+    RunReport report = sample();
+    EXPECT_THAT(summaryText(report), Not(HasSubstr("place")));
+    EXPECT_THAT(summaryText(report), Not(HasSubstr("cut short")));
+    report.fitCutShort = true;
+    EXPECT_THAT(summaryText(report), HasSubstr("cut short by --fit-seconds"));
+}
+
+} // namespace
+} // namespace i2b
