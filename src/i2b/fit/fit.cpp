@@ -9,7 +9,7 @@ namespace i2b {
 namespace {
 
 constexpr int rings = 2;             // of core points behind the front that move
-constexpr double offTarget = 0.005;  // of h: a wall node farther from its target is worked on
+constexpr double offTarget = 0.01;   // of h: a wall node farther from its target is worked on
 constexpr double unreached = 0.1;    // of h: a node farther from its feature is let go at the end
 constexpr double poorEnergy = 2.2;   // phi: nodes of such corners are worked on
 
@@ -25,7 +25,7 @@ void grow(const Band& band, std::vector<std::uint8_t>& marked, int rings) {
     }
 }
 
-// Nodes off their target or in a poor corner, and two rings around them.
+// Nodes off their target or in a poor corner, and those around them.
 std::vector<std::uint8_t> activeNodes(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x) {
     std::vector<std::uint8_t> active = nodesOfPoorCorners(band, x, poorEnergy);
     parallelFor(band.movable, [&](std::size_t n) {
@@ -34,7 +34,7 @@ std::vector<std::uint8_t> activeNodes(const Band& band, const SurfaceIndex& inde
             active[n] = t.found && norm(t.point - x[n]) > offTarget * band.h[n];
         }
     });
-    grow(band, active, 2);
+    grow(band, active, 1);
     return active;
 }
 
@@ -65,11 +65,11 @@ void releaseUnreached(const Band& band, const SurfaceIndex& index, const Feature
     });
 }
 
-// Newly snapped nodes, and two rings around them, are worked on too.
+// Newly snapped nodes, and those around them, are worked on too.
 void activateSnapped(const Band& band, const std::vector<Snap>& snaps, std::vector<std::uint8_t>& active) {
     std::vector<std::uint8_t> around(band.movable, 0);
     for (std::size_t n = 0; n < band.walls; ++n) around[n] = snaps[n].kind != SnapKind::none;
-    grow(band, around, 2);
+    grow(band, around, 1);
     for (std::size_t n = 0; n < band.movable; ++n) active[n] = active[n] || around[n];
 }
 

@@ -9,6 +9,7 @@ namespace {
 // Of h: nearer to the geometry the way to it says little. At an edge of a sheet it would hold the node to that edge,
 // where the triangle lets it glide away.
 constexpr double settled = 0.1;
+constexpr double onIt = 0.02; // of h: a node so near is on the geometry
 
 // Closest point within the plane(s) of the domain sides that the node lies in: again and again to where the plane through
 // the closest point, across the way to it, meets the side.
@@ -135,8 +136,10 @@ WallTarget targetSeen(const SurfaceIndex& index, const Vec3& f, const Vec3& b, d
     if (hit && (1 - hit.t) * length > off) {
         c = {f + (b - f) * hit.t, 0, hit.triangle};
     } else {
+        // A node on the geometry stays where it is: asked from beside it, its place would wander.
+        if (outside == 0) c = index.closest(b, onIt * h);
         const Vec3 q = length > 0 ? b + withinSides(f - b, outside) * std::min(1.0, 0.1 * h / length) : b;
-        c = closestWithinSides(index, q, outside, 2 * reach);
+        if (!c) c = closestWithinSides(index, q, outside, 2 * reach);
     }
     if (!c) return target;
     target.found = true;
