@@ -224,7 +224,7 @@ TEST(OffCauses, Features) {
     p.x[n] = {side + 0.1 * h, 0, side + 0.1 * h};
     p.snaps[n] = {SnapKind::corner, {side, 0.6 * h, side}, {}}; // sideways: worse than where it is
     EXPECT_EQ(p.causeOf(n), OffCause::feature);
-    p.snaps[n] = {SnapKind::implicitLine, p.x[n], {0, 1, 0}};
+    p.snaps[n] = {SnapKind::corner, p.x[n], {}};
     EXPECT_EQ(p.causeOf(n), OffCause::featureOff);
     const std::size_t m = p.nodeAt({0.45, 0, 0.5}); // its target is sideways of a place over its neighbour
     p.x[m] = {side + 0.3 * h, 0, side - 0.1 * h};

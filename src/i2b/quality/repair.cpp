@@ -294,6 +294,8 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, c
     summary.moves += optimiser.snapWished(wishSweeps);
     summary.moves += optimiser.pullIn(pullSweeps);
     faults.poorCells(poor);
+    if (poor.all > 0) summary.moves += optimiser.mend(mendSweeps); // what the retreat has left, from where it now is
+    faults.poorCells(poor);
     summary.poorRemaining = poor.all;
     const std::vector<Vec3> after = wallPositions(front);
     for (std::size_t v = 0; v < after.size(); ++v) summary.retreatedWalls.push_back(!(after[v] == before[v]));
