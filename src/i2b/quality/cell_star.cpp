@@ -109,6 +109,18 @@ void CellStar::judgeFace(const Face& face, const FaceShape& shape, Badness& out)
     add(out, std::min(wrong, limits_.volumeRatio / std::max(values.ratio, 1e-300)));
 }
 
+double CellStar::shortestEdgeAt(std::int32_t point) const {
+    double shortest2 = std::numeric_limits<double>::infinity();
+    for (const Face& f : faces_) {
+        const auto v = mesh_.face(f.face);
+        for (Index i = 0; i < v.size(); ++i) {
+            const std::int32_t next = v[i + 1 == v.size() ? 0 : i + 1];
+            if (v[i] == point || next == point) shortest2 = std::min(shortest2, norm2(mesh_.points[Index(v[i])] - mesh_.points[Index(next)]));
+        }
+    }
+    return std::sqrt(shortest2);
+}
+
 Badness CellStar::judge() {
     for (Index i = 0; i < faces_.size(); ++i) shapes_[i] = measureFace(mesh_, faces_[i].face);
     Badness out;

@@ -24,6 +24,8 @@ class CellStar {
     const std::vector<std::int32_t>& cells() const { return cells_; } // ascending
     // With the mesh's points as they are now.
     Badness judge();
+    // m, of the edges that end at the point, one of those gathered.
+    double shortestEdgeAt(std::int32_t point) const;
 
   private:
     struct Face {

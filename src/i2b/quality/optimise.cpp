@@ -13,6 +13,7 @@ constexpr double settled = 0.01;      // of h: nodes nearer to the geometry are 
 constexpr double offWall = 0.005;     // of h: nodes farther off are pulled in
 constexpr double crossing = 0.05;     // of h: so near to its end a way may meet geometry
 constexpr double leastGain = 1e-3;    // of the sum: what a move must bring
+constexpr double leastEdge = 0.015;    // of h: no nearer may a node come to another for the wall's sake
 constexpr double nearLimit = 0.98;    // of a limit: a node on its way to the wall may bring its cells up to there
 // A move for the wall's sake keeps to the limits, or makes nothing worse where they are broken already.
 bool mayStand(const Badness& now, const Badness& before) {
@@ -44,6 +45,8 @@ struct Optimiser::Worker {
         for (const auto& [p, x] : moved) optimiser.mesh_.points[Index(p)] = x;
         return star.judge();
     }
+    // Of a wall node where it is: its point at the wall comes last of its stack.
+    double shortestEdge() const { return star.shortestEdgeAt(moved.back().first); }
     // Leaves the node at a place.
     void end(const Vec3& to) {
         at(to);
@@ -170,10 +173,11 @@ bool Optimiser::pullNode(const Task& task, Worker& worker) {
     const Vec3 from = worker.from, way = withinSides(target - from, nodes_.outside(task.node));
     if (norm(way) < 1e-9 * nodes_.h(task.node)) return false;
     const Badness before = worker.at(from);
+    const double shortest = worker.shortestEdge();
     Vec3 best = from;
     for (const double part : {1.0, 0.5, 0.25}) {
         const Vec3 to = from + way * part;
-        if (!mayStand(worker.at(to), before) || !isFree(task.node, to)) continue;
+        if (!mayStand(worker.at(to), before) || worker.shortestEdge() < std::min(shortest, leastEdge * nodes_.h(task.node)) || !isFree(task.node, to)) continue;
         best = to;
         break;
     }
@@ -301,7 +305,8 @@ bool Optimiser::snapNode(const Task& task, Worker& worker) {
     worker.begin(task);
     const Vec3 from = worker.from, to = snapLine(guide_.index, guide_.features, wish, from, front_.h[v]).point;
     const Badness before = worker.at(from);
-    const bool there = mayStand(worker.at(to), before) && isFree(task.node, to);
+    const double shortest = std::min(worker.shortestEdge(), leastEdge * front_.h[v]);
+    const bool there = mayStand(worker.at(to), before) && worker.shortestEdge() >= shortest && isFree(task.node, to);
     worker.end(there ? to : from);
     if (there) guide_.snaps[v] = wish;
     return there;
