@@ -1,8 +1,11 @@
 // Proves: vertices are put into those wall edges only that cross a border or an edge, they lie on it, and afterwards each
 // face of the front lies on one side; with the fit's own snaps and without any; the same on any number of threads.
+#include "i2b/fit/between.h"
 #include "i2b/fit/insert.h"
+#include "i2b/quality/quality_report.h"
 #include "pipeline/stages_run.h"
 #include <gtest/gtest.h>
+#include <functional>
 #include <map>
 #include <tbb/global_control.h>
 
@@ -66,26 +69,110 @@ std::size_t over(const std::vector<double>& reach, double limit) {
     return static_cast<std::size_t>(std::count_if(reach.begin(), reach.end(), [&](double r) { return r > limit; }));
 }
 
+// What a face is cut for: two of its nodes, neither on a line, see sides that turn or different parts.
+std::size_t straddling(const ToFront& run, const std::vector<std::uint8_t>& onLine) {
+    std::size_t n = 0;
+    for (auto f : run.front.mesh.faces()) {
+        std::vector<Foot> feet;
+        for (auto v : run.front.mesh.fv_range(f)) {
+            const auto i = static_cast<std::size_t>(v.idx());
+            if (i >= run.front.firstInserted() || onLine[i]) continue;
+            const Vec3 b = wallPoint(run.front, i);
+            feet.push_back(footAt(*run.painted.index, b, run.front.front[i], stagesSize));
+        }
+        bool differ = false;
+        for (const Foot& a : feet)
+            for (const Foot& b : feet) differ = differ || turns(a, b) || a.part != b.part;
+        n += differ;
+    }
+    return n;
+}
+
+void expectSoundMesh(const ToFront& run) {
+    const LayerStack layers = makeLayers(run.front, LayerOptions{});
+    const PolyMesh mesh = assemble({run.lattice, run.kept, run.front, layers, run.painted.soup.parts});
+    EXPECT_EQ(mesh.validate(), "");
+    const QualityReport q = measureQuality(mesh);
+    EXPECT_EQ(q.negativeVolumeCells + q.wrongOrientedFaces, 0);
+    EXPECT_EQ(q.openCells + q.openCellsByEdges + q.unusedPoints + q.duplicateFaces + q.faultyFaceVertices, 0);
+}
+
+// No node is snapped to the border: nearly every face across it is cut, all else stays.
 TEST(Insert, DividesEdgesAcrossABorderOfFlushParts) {
     Unsnapped run(flushHalves());
-    const std::size_t before = over(reachOver(run.front, borderSide), 0.13 * stagesSize), faces = run.front.part.size();
     const Front old = run.front;
+    const double clear = 0.13 * stagesSize; // crossings nearer to an end are left
+    const std::size_t before = over(reachOver(run.front, borderSide), clear);
     const std::size_t n = run.insert();
-    const std::size_t after = over(reachOver(run.front, borderSide), 0.13 * stagesSize);
-    std::printf("before %zu after %zu inserted %zu faces %zu %zu max %g\n", before, after, n, faces, run.front.part.size(), 0.0);
     EXPECT_GT(n, 30u);
     EXPECT_EQ(n, run.front.inserted.size());
+    EXPECT_LE(8 * over(reachOver(run.front, borderSide), clear), before);
     expectOnTheirEdges(run.front, *run.painted.index);
     for (std::size_t i = 0; i < n; ++i) {
         const auto& ends = run.front.inserted[i].ends;
         const double a = borderSide(wallPoint(run.front, static_cast<std::size_t>(ends[0])));
         const double b = borderSide(wallPoint(run.front, static_cast<std::size_t>(ends[1])));
-        const Vec3 on = wallPoint(run.front, run.front.firstInserted() + i);
-        std::printf("%g %g at %g %g %g : %g t %g\n", a, b, on.x, on.y, on.z, borderSide(on), run.front.inserted[i].t);
+        EXPECT_LT(a * b, 0); // crosses
+        EXPECT_LT(std::abs(borderSide(wallPoint(run.front, run.front.firstInserted() + i))), 0.05 * stagesSize);
     }
+    ASSERT_EQ(run.front.firstInserted(), old.front.size());
     for (std::size_t v = 0; v < old.front.size(); ++v) { // nothing else moves
         EXPECT_EQ(old.front[v], run.front.front[v]);
         EXPECT_EQ(wallPoint(old, v), wallPoint(run.front, v));
+    }
+    expectSoundMesh(run);
+}
+
+// The same of the sharp edges of a box at an odd angle, to which no node is snapped either.
+TEST(Insert, DividesEdgesAcrossSharpEdges) {
+    Unsnapped run(turnedBox());
+    const std::vector<std::uint8_t> none(run.front.front.size(), 0);
+    const std::size_t before = straddling(run, none);
+    const std::size_t n = run.insert();
+    EXPECT_GT(n, 50u);
+    expectOnTheirEdges(run.front, *run.painted.index);
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto& ends = run.front.inserted[i].ends;
+        const auto footOfEnd = [&](std::int32_t end) {
+            const auto v = static_cast<std::size_t>(end);
+            return footAt(*run.painted.index, wallPoint(run.front, v), run.front.front[v], stagesSize);
+        };
+        EXPECT_TRUE(turns(footOfEnd(ends[0]), footOfEnd(ends[1])));
+        const Vec3 on = wallPoint(run.front, run.front.firstInserted() + i);
+        const FeatureIndex::Line line = run.features.closestLine(on, stagesSize);
+        ASSERT_TRUE(line.found);
+        EXPECT_LT(norm(line.point - on), 1e-9);
+    }
+    EXPECT_LT(straddling(run, none), before);
+    expectSoundMesh(run);
+}
+
+// A whole fit, with snaps: no face reaches over the border, and few, at odd angles, round an edge.
+TEST(Insert, LeavesNoFaceOnBothSidesOfABorder) {
+    const ToMesh run(flushHalves(), stagesOptions());
+    EXPECT_EQ(run.front.validate(), "");
+    EXPECT_EQ(over(reachOver(run.front, borderSide), 0.05 * stagesSize), 0u);
+}
+
+TEST(Insert, LeavesFewFacesRoundAnEdge) {
+    const Unsnapped without(turnedBox());
+    const ToMesh run(turnedBox(), stagesOptions());
+    EXPECT_EQ(run.front.validate(), "");
+    std::vector<std::uint8_t> onLine(run.front.front.size(), 0);
+    for (std::size_t v = 0; v < run.fitted.snaps.size(); ++v) onLine[v] = run.fitted.snaps[v].kind != SnapKind::none;
+    EXPECT_LT(10 * straddling(run, onLine), straddling(without, std::vector<std::uint8_t>(without.front.front.size(), 0)));
+}
+
+TEST(Insert, SameOnAnyNumberOfThreads) {
+    for (const Surface& soup : {flushHalves(), turnedBox()}) {
+        std::uint64_t sum = 0;
+        for (const std::size_t threads : {1u, 3u}) {
+            const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+            Unsnapped run(soup);
+            EXPECT_GT(run.insert(), 30u);
+            if (threads == 1) sum = run.front.checksum();
+            EXPECT_EQ(run.front.checksum(), sum);
+        }
     }
 }
 

@@ -2,10 +2,10 @@
 // divided edges and cut faces is closed, each edge of a cell lies in two of its faces, and every cell is right way out.
 #include "i2b/assemble/divided_edges.h"
 #include "i2b/quality/quality_report.h"
+#include "pipeline/shape_run.h"
 #include "pipeline/stages_run.h"
 #include <gtest/gtest.h>
 #include <map>
-#include <tbb/global_control.h>
 
 namespace i2b::test {
 namespace {
@@ -108,16 +108,21 @@ TEST_P(DividedFront, GivesAClosedMesh) {
 
 INSTANTIATE_TEST_SUITE_P(Many, DividedFront, testing::Range(0u, 4u));
 
-// Where the fit itself puts vertices in, between two flush parts and along the edges of a turned box: the same.
+// Where the fit itself puts vertices in: the same.
 TEST(DividedFront, OfTheFitGivesAClosedMesh) {
-    for (const Surface& soup : {flushHalves(), turnedBox()}) {
-        Options options = stagesOptions();
-        options.fit.features = true;
-        const ToMesh run(soup, options);
+    for (const Shape& shape : shapes()) {
+        if (std::string(shape.name) != "crossed-boxes") continue;
+        const ToMesh run(posed(shape, stagesSize, 0).soup, stagesOptions());
+        EXPECT_GT(run.front.inserted.size(), 0u);
+        EXPECT_EQ(run.front.inserted.size(), run.fitted.inserted);
         EXPECT_EQ(run.mesh.validate(), "");
         EXPECT_EQ(openByEdges(run.mesh), 0u);
-        std::printf("inserted %zu faces %zu\n", run.front.inserted.size(), run.front.part.size());
+        const QualityReport q = measureQuality(run.mesh);
+        EXPECT_EQ(q.openCells + q.openCellsByEdges + q.unusedPoints + q.duplicateFaces + q.faultyFaceVertices, 0);
+        EXPECT_TRUE(q.upperTriangular);
+        return;
     }
+    FAIL() << "no such shape";
 }
 
 } // namespace

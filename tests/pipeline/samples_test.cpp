@@ -19,8 +19,8 @@ struct SampleCase {
 
 void PrintTo(const SampleCase& c, std::ostream* out) { *out << c.name; }
 
-const SampleCase sampleCases[] = {{"box", 0.1, false},      {"sphere", 0.06, false},    {"missile", 0.05, false},
-                                  {"tunnel", 0.03, true},   {"wing-body", 0.05, false}, {"engine", 0.03, false}};
+const SampleCase sampleCases[] = {{"box", 0.1, false},      {"sphere", 0.06, false},    {"missile", 0.1, false},
+                                  {"tunnel", 0.03, true},   {"wing-body", 0.1, false}, {"engine", 0.03, false}};
 
 class Samples : public testing::TestWithParam<SampleCase> {};
 

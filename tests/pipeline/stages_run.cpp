@@ -44,6 +44,16 @@ void addInserted(Front& front, std::int32_t p, std::int32_t q, double t) {
     front.inserted.push_back({{p, q}, t});
 }
 
+// Not all on one straight edge of a lattice face.
+bool hasArea(const Front& front, const std::vector<std::int32_t>& polygon) {
+    Vec3 area;
+    const Vec3& o = front.front[static_cast<std::size_t>(polygon[0])];
+    for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
+        area += cross(front.front[static_cast<std::size_t>(polygon[i])] - o, front.front[static_cast<std::size_t>(polygon[i + 1])] - o);
+    const double h = front.h[static_cast<std::size_t>(polygon[0])];
+    return norm(area) > 1e-3 * h * h;
+}
+
 } // namespace
 
 Options stagesOptions() {
@@ -133,7 +143,7 @@ void divideAtRandom(Front& front, unsigned seed, double share) {
         const auto from = ring.begin() + static_cast<std::ptrdiff_t>(added[0]), to = ring.begin() + static_cast<std::ptrdiff_t>(added[1]);
         std::vector<std::int32_t> one(from, to + 1), other(to, ring.end());
         other.insert(other.end(), ring.begin(), from + 1);
-        cut.polygons = {one, other};
+        if (hasArea(front, one) && hasArea(front, other)) cut.polygons = {one, other};
     }
     replaceFaces(front, cuts);
 }

@@ -13,7 +13,7 @@ namespace {
 
 QualityLimits limitsOf() {
     QualityLimits limits;
-    limits.nonOrthogonality = 64.5;
+    limits.nonOrthogonality = 37; // stricter than repair: a box is easy
     limits.skewness = 3.8;
     limits.faceWeight = 0.055, limits.volumeRatio = 0.02, limits.determinant = 0.0015;
     return limits;
@@ -81,7 +81,7 @@ std::vector<std::size_t> displaceAlong(Boxed& b) {
     std::vector<std::size_t> moved;
     for (const Spot& s : spots) {
         const std::size_t v = b.nodeAt(s.place);
-        b.put(v, b.wallOf(v) + normalized(s.along) * (0.8 * stagesSize));
+        b.put(v, b.wallOf(v) + normalized(s.along) * (1.1 * stagesSize));
         moved.push_back(v);
     }
     return moved;
