@@ -20,7 +20,7 @@ struct SampleCase {
 void PrintTo(const SampleCase& c, std::ostream* out) { *out << c.name; }
 
 const SampleCase sampleCases[] = {{"box", 0.1, false},      {"sphere", 0.06, false},    {"missile", 0.1, false},
-                                  {"tunnel", 0.03, true},   {"wing-body", 0.1, false}, {"engine", 0.03, false}};
+                                  {"tunnel", 0.03, true},   {"wing-body", 0.1, false}, {"engine", 0.04, false}};
 
 class Samples : public testing::TestWithParam<SampleCase> {};
 

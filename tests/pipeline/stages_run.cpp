@@ -86,8 +86,10 @@ double borderSide(const Vec3& p) {
 Surface flushHalves() {
     const samples::Frame frame = samples::upright({0, 0, -half.z});
     const auto onBorder = [](const Vec3& centre, const Vec3&) { return std::abs(borderSide(centre)) < 1e-9; };
-    samples::Mesh left = samples::extrude(frame, {{-half.x, -half.y}, {borderX0, -half.y}, {borderX1, half.y}, {-half.x, half.y}}, {}, {0, 2 * half.z});
-    samples::Mesh right = samples::extrude(frame, {{borderX0, -half.y}, {half.x, -half.y}, {half.x, half.y}, {borderX1, half.y}}, {}, {0, 2 * half.z});
+    const samples::Loop2 outline{{-half.x, -half.y}, {borderX0, -half.y}, {borderX1, half.y}, {-half.x, half.y}};
+    samples::Mesh left = samples::extrude(frame, outline, {}, {0, 2 * half.z});
+    const samples::Loop2 other{{borderX0, -half.y}, {half.x, -half.y}, {half.x, half.y}, {borderX1, half.y}};
+    samples::Mesh right = samples::extrude(frame, other, {}, {0, 2 * half.z});
     samples::drop(left, onBorder);
     samples::drop(right, onBorder);
     Surface soup;

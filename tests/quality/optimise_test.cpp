@@ -69,7 +69,8 @@ double worstShare(const PolyMesh& mesh) {
     const QualityLimits l = limitsOf();
     const QualityReport q = measureQuality(mesh);
     const double ortho = (1 - std::cos(q.maxNonOrthogonality * degree)) / (1 - std::cos(l.nonOrthogonality * degree));
-    return std::max({ortho, q.maxSkewness / l.skewness, l.faceWeight / q.minFaceWeight, l.volumeRatio / q.minVolumeRatio, l.determinant / q.minDeterminant});
+    return std::max({ortho, q.maxSkewness / l.skewness, l.faceWeight / q.minFaceWeight, l.volumeRatio / q.minVolumeRatio,
+                     l.determinant / q.minDeterminant});
 }
 
 // Places amid the sides of the box, away from edges and border, each with a way along its side.
