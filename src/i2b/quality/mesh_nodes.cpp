@@ -34,21 +34,18 @@ std::int32_t MeshNodes::movedPlace(std::int32_t point) const {
 }
 
 void MeshNodes::nodesOf(std::int32_t point, std::vector<MeshNode>& out) const {
-    const auto ends = [&](std::int32_t vertex, MeshNode::Kind kind) { // of an inserted vertex its edge's
-        const auto first = static_cast<std::int32_t>(front_.firstInserted());
-        if (vertex < first) {
-            out.push_back({kind, kind == MeshNode::wall ? vertex : front_.corePoint[Index(vertex)]});
-            return;
-        }
-        for (std::int32_t end : front_.inserted[Index(vertex - first)].ends) out.push_back({kind, kind == MeshNode::wall ? end : front_.corePoint[Index(end)]});
+    const auto first = static_cast<std::int32_t>(front_.firstInserted());
+    const auto addFronts = [&](std::int32_t vertex) { // of an inserted vertex its edge's
+        if (vertex < first) return out.push_back({MeshNode::front, front_.corePoint[Index(vertex)]});
+        for (std::int32_t end : front_.inserted[Index(vertex - first)].ends) out.push_back({MeshNode::front, front_.corePoint[Index(end)]});
     };
     if (point >= core_) {
         const auto vertex = static_cast<std::int32_t>(layers_.vertexOfPoint(static_cast<Index>(point - core_)));
-        ends(vertex, MeshNode::wall);
-        ends(vertex, MeshNode::front);
+        if (vertex < first) out.push_back({MeshNode::wall, vertex}); // inserted ones stay where they are on the wall
+        addFronts(vertex);
     } else if (point >= front_.corePoints) {
-        ends(static_cast<std::int32_t>(front_.firstInserted()) + point - front_.corePoints, MeshNode::front);
-    } else if (const auto [first, last] = fansOf(point); first != last) {
+        addFronts(first + point - front_.corePoints);
+    } else if (const auto [begin, end] = fansOf(point); begin != end) {
         out.push_back({MeshNode::front, point});
     } else if (const std::int32_t i = movedPlace(point); i >= 0) {
         out.push_back({MeshNode::core, i});

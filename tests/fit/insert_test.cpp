@@ -1,0 +1,190 @@
+// Proves: vertices are put into those wall edges only that cross a border or an edge, they lie on it, and afterwards each
+// face of the front lies on one side; with the fit's own snaps and without any; the same on any number of threads.
+#include "i2b/fit/between.h"
+#include "i2b/fit/insert.h"
+#include "i2b/quality/quality_report.h"
+#include "pipeline/stages_run.h"
+#include <gtest/gtest.h>
+#include <functional>
+#include <map>
+#include <tbb/global_control.h>
+
+namespace i2b::test {
+namespace {
+
+// A fit without features, and the positions of the band's nodes after it: nothing is snapped to anything.
+struct Unsnapped : ToFront {
+    explicit Unsnapped(const Surface& soup) : ToFront(soup, stagesOptions()), band(buildBand(lattice, front, 2)), snaps(band.walls) {
+        FitOptions options;
+        options.features = false;
+        fitFront(front, lattice, *painted.index, graph, options, Context());
+        x = band.start;
+        std::map<std::int32_t, Vec3> moved;
+        for (std::size_t i = 0; i < front.movedPoints.size(); ++i) moved[front.movedPoints[i]] = front.movedTo[i];
+        for (std::size_t n = band.walls; n < band.nodes(); ++n)
+            if (const auto at = moved.find(band.corePoint[n - band.walls]); at != moved.end()) x[n] = at->second;
+        for (std::size_t v = 0; v < band.walls; ++v) x[v] = wallPoint(front, v), x[static_cast<std::size_t>(band.frontNode[v])] = front.front[v];
+    }
+    std::size_t insert() { return insertVertices(front, band, *painted.index, features, x, snaps); }
+    Band band;
+    std::vector<Vec3> x;
+    std::vector<Snap> snaps;
+};
+
+// What holds of inserted vertices wherever they come from.
+void expectOnTheirEdges(const Front& front, const SurfaceIndex& index) {
+    EXPECT_EQ(front.validate(), "");
+    for (std::size_t i = 0; i < front.inserted.size(); ++i) {
+        const std::size_t v = front.firstInserted() + i;
+        const auto& [ends, t] = front.inserted[i];
+        const auto p = static_cast<std::size_t>(ends[0]), q = static_cast<std::size_t>(ends[1]);
+        ASSERT_LT(p, front.firstInserted());
+        ASSERT_LT(q, front.firstInserted());
+        EXPECT_GT(t, 0.1);
+        EXPECT_LT(t, 0.9);
+        EXPECT_EQ(front.corePoint[v], front.corePoints + static_cast<std::int32_t>(i));
+        EXPECT_LT(norm(front.front[v] - (front.front[p] + (front.front[q] - front.front[p]) * t)), 1e-14);
+        EXPECT_LT(index.closest(wallPoint(front, v)).distance, 1e-9);
+        EXPECT_FALSE(front.mesh.find_halfedge(FrontMesh::VertexHandle(ends[0]), FrontMesh::VertexHandle(ends[1])).is_valid()); // is divided
+        for (const std::int32_t e : ends)
+            EXPECT_TRUE(front.mesh.find_halfedge(FrontMesh::VertexHandle(e), FrontMesh::VertexHandle(static_cast<int>(v))).is_valid());
+    }
+}
+
+// Per face how far it reaches over a border, m: the lesser of its two sides.
+std::vector<double> reachOver(const Front& front, const std::function<double(const Vec3&)>& side) {
+    std::vector<double> reach;
+    for (auto f : front.mesh.faces()) {
+        double low = 0, high = 0;
+        for (auto v : front.mesh.fv_range(f)) {
+            const double s = side(wallPoint(front, static_cast<std::size_t>(v.idx())));
+            low = std::min(low, s), high = std::max(high, s);
+        }
+        reach.push_back(std::min(-low, high));
+    }
+    return reach;
+}
+
+std::size_t over(const std::vector<double>& reach, double limit) {
+    return static_cast<std::size_t>(std::count_if(reach.begin(), reach.end(), [&](double r) { return r > limit; }));
+}
+
+// What a face is cut for: two of its nodes, neither on a line, see sides that turn or different parts.
+std::size_t straddling(const ToFront& run, const std::vector<std::uint8_t>& onLine) {
+    std::size_t n = 0;
+    for (auto f : run.front.mesh.faces()) {
+        std::vector<Foot> feet;
+        for (auto v : run.front.mesh.fv_range(f)) {
+            const auto i = static_cast<std::size_t>(v.idx());
+            if (i >= run.front.firstInserted() || onLine[i]) continue;
+            const Vec3 b = wallPoint(run.front, i);
+            feet.push_back(footAt(*run.painted.index, b, run.front.front[i], stagesSize));
+        }
+        bool differ = false;
+        for (const Foot& a : feet)
+            for (const Foot& b : feet) differ = differ || turns(a, b) || a.part != b.part;
+        n += differ;
+    }
+    return n;
+}
+
+void expectSoundMesh(const ToFront& run) {
+    const LayerStack layers = makeLayers(run.front, LayerOptions{});
+    const PolyMesh mesh = assemble({run.lattice, run.kept, run.front, layers, run.painted.soup.parts});
+    EXPECT_EQ(mesh.validate(), "");
+    const QualityReport q = measureQuality(mesh);
+    EXPECT_EQ(q.negativeVolumeCells + q.wrongOrientedFaces, 0);
+    EXPECT_EQ(q.openCells + q.openCellsByEdges + q.unusedPoints + q.duplicateFaces + q.faultyFaceVertices, 0);
+}
+
+// No node is snapped to the border: nearly every face across it is cut, all else stays.
+TEST(Insert, DividesEdgesAcrossABorderOfFlushParts) {
+    Unsnapped run(flushHalves());
+    const Front old = run.front;
+    const double clear = 0.13 * stagesSize; // crossings nearer to an end are left
+    const std::size_t before = over(reachOver(run.front, borderSide), clear);
+    const std::size_t n = run.insert();
+    EXPECT_GT(n, 30u);
+    EXPECT_EQ(n, run.front.inserted.size());
+    EXPECT_LE(8 * over(reachOver(run.front, borderSide), clear), before);
+    expectOnTheirEdges(run.front, *run.painted.index);
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto& ends = run.front.inserted[i].ends;
+        const double a = borderSide(wallPoint(run.front, static_cast<std::size_t>(ends[0])));
+        const double b = borderSide(wallPoint(run.front, static_cast<std::size_t>(ends[1])));
+        EXPECT_LT(a * b, 0); // crosses
+        EXPECT_LT(std::abs(borderSide(wallPoint(run.front, run.front.firstInserted() + i))), 0.05 * stagesSize);
+    }
+    ASSERT_EQ(run.front.firstInserted(), old.front.size());
+    for (std::size_t v = 0; v < old.front.size(); ++v) { // nothing else moves
+        EXPECT_EQ(old.front[v], run.front.front[v]);
+        EXPECT_EQ(wallPoint(old, v), wallPoint(run.front, v));
+    }
+    expectSoundMesh(run);
+}
+
+// The same of the sharp edges of a box at an odd angle, to which no node is snapped either.
+TEST(Insert, DividesEdgesAcrossSharpEdges) {
+    Unsnapped run(turnedBox());
+    const std::vector<std::uint8_t> none(run.front.front.size(), 0);
+    const std::size_t before = straddling(run, none);
+    const std::size_t n = run.insert();
+    EXPECT_GT(n, 50u);
+    expectOnTheirEdges(run.front, *run.painted.index);
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto& ends = run.front.inserted[i].ends;
+        const auto footOfEnd = [&](std::int32_t end) {
+            const auto v = static_cast<std::size_t>(end);
+            return footAt(*run.painted.index, wallPoint(run.front, v), run.front.front[v], stagesSize);
+        };
+        EXPECT_TRUE(turns(footOfEnd(ends[0]), footOfEnd(ends[1])));
+        const Vec3 on = wallPoint(run.front, run.front.firstInserted() + i);
+        const FeatureIndex::Line line = run.features.closestLine(on, stagesSize);
+        ASSERT_TRUE(line.found);
+        EXPECT_LT(norm(line.point - on), 1e-9);
+    }
+    EXPECT_LT(straddling(run, none), before);
+    expectSoundMesh(run);
+}
+
+// A whole fit, with snaps: only where the border runs over a sharp edge, to which the nodes there are held, may a face reach
+// over it, and not far.
+TEST(Insert, LeavesNoFaceOnBothSidesOfABorder) {
+    const ToMesh run(flushHalves(), stagesOptions());
+    EXPECT_EQ(run.front.validate(), "");
+    const std::vector<double> reach = reachOver(run.front, borderSide);
+    EXPECT_LE(over(reach, 0.05 * stagesSize), 8u); // two at each of four such places
+    EXPECT_EQ(over(reach, 0.25 * stagesSize), 0u);
+    for (auto f : run.front.mesh.faces()) {
+        if (reach[static_cast<std::size_t>(f.idx())] <= 0.05 * stagesSize) continue;
+        std::size_t held = 0;
+        for (auto v : run.front.mesh.fv_range(f)) held += run.fitted.snaps[static_cast<std::size_t>(v.idx())].kind == SnapKind::line;
+        EXPECT_GE(held, 2u);
+    }
+}
+
+// At odd angles few faces are left that go round an edge.
+TEST(Insert, LeavesFewFacesRoundAnEdge) {
+    const Unsnapped without(turnedBox());
+    const ToMesh run(turnedBox(), stagesOptions());
+    EXPECT_EQ(run.front.validate(), "");
+    std::vector<std::uint8_t> onLine(run.front.front.size(), 0);
+    for (std::size_t v = 0; v < run.fitted.snaps.size(); ++v) onLine[v] = run.fitted.snaps[v].kind != SnapKind::none;
+    EXPECT_LT(10 * straddling(run, onLine), straddling(without, std::vector<std::uint8_t>(without.front.front.size(), 0)));
+}
+
+TEST(Insert, SameOnAnyNumberOfThreads) {
+    for (const Surface& soup : {flushHalves(), turnedBox()}) {
+        std::uint64_t sum = 0;
+        for (const std::size_t threads : {1u, 3u}) {
+            const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+            Unsnapped run(soup);
+            EXPECT_GT(run.insert(), 30u);
+            if (threads == 1) sum = run.front.checksum();
+            EXPECT_EQ(run.front.checksum(), sum);
+        }
+    }
+}
+
+} // namespace
+} // namespace i2b::test

@@ -1,0 +1,62 @@
+// Proves, on every built-in geometry: what leaves generate() keeps to 65 degrees of non-orthogonality and a skewness of 4,
+// no cell is wrong, and plain checkMesh has nothing to say.
+#include "i2b/geometry/write_stl.h"
+#include "i2b/program/generate.h"
+#include "i2b/samples/sample.h"
+#include "pipeline/shape_run.h"
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace i2b::test {
+namespace {
+
+struct SampleCase {
+    const char* name;
+    double h;     // m, cells at the wall
+    bool inside;
+};
+
+void PrintTo(const SampleCase& c, std::ostream* out) { *out << c.name; }
+
+const SampleCase sampleCases[] = {{"box", 0.1, false},      {"sphere", 0.06, false},    {"missile", 0.1, false},
+                                  {"tunnel", 0.03, true},   {"wing-body", 0.1, false}, {"engine", 0.04, false}};
+
+class Samples : public testing::TestWithParam<SampleCase> {};
+
+TEST_P(Samples, KeepToTheLimits) {
+    const SampleCase& c = GetParam();
+    const std::filesystem::path file = std::filesystem::temp_directory_path() / ("i2b_sample_" + std::to_string(getpid()) + "_" + c.name + ".stl");
+    writeStl(makeSample(c.name), file.string(), StlFormat::binary);
+    Options options;
+    options.geometry.files = {file.string()};
+    options.size.surface = c.h;
+    options.size.max = 8 * c.h;
+    if (c.inside) options.domain.seeds = {{"", *sampleSeed(c.name, "inside")}};
+    Context context;
+    const MeshResult result = generate(options, context);
+    std::filesystem::remove(file);
+    const QualityReport& q = result.report.quality.value();
+    EXPECT_EQ(result.mesh.validate(), "");
+    EXPECT_LE(q.maxNonOrthogonality, 65);
+    EXPECT_LE(q.maxSkewness, 4);
+    EXPECT_EQ(q.negativeVolumeCells + q.wrongOrientedFaces + q.openCells, 0);
+    EXPECT_EQ(plainFailures(q), "");
+    EXPECT_GT(q.cells, 500);
+}
+
+INSTANTIATE_TEST_SUITE_P(BuiltIn, Samples, testing::ValuesIn(sampleCases), [](const auto& info) {
+    std::string name = info.param.name;
+    std::erase(name, '-');
+    return name;
+});
+
+// None may be added without a case here.
+TEST(SampleTable, IsComplete) {
+    const std::vector<std::string> names = sampleNames();
+    for (const std::string& name : names)
+        EXPECT_EQ(std::ranges::count_if(sampleCases, [&](const SampleCase& c) { return name == c.name; }), 1) << name;
+}
+
+} // namespace
+} // namespace i2b::test

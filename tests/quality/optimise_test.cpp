@@ -1,0 +1,175 @@
+// Proves: on a box whose wall nodes were put in bad places, mend() makes the poor faces vanish and never raises the worst;
+// pullIn() brings nodes back onto the geometry; snapWished() brings them to a line that they should be on, or leaves them
+// be; no cell turns bad; the same on any number of threads.
+#include "i2b/quality/optimise.h"
+#include "i2b/quality/quality_report.h"
+#include "pipeline/stages_run.h"
+#include <gtest/gtest.h>
+#include <numbers>
+#include <tbb/global_control.h>
+
+namespace i2b::test {
+namespace {
+
+QualityLimits limitsOf() {
+    QualityLimits limits;
+    limits.nonOrthogonality = 37; // stricter than repair: a box is easy
+    limits.skewness = 3.8;
+    limits.faceWeight = 0.055, limits.volumeRatio = 0.02, limits.determinant = 0.0015;
+    return limits;
+}
+
+// A mesh around a box along the axes, with what the optimiser needs.
+struct Boxed {
+    Boxed()
+        : run(flushHalves(), stagesOptions()), cellFaces(buildCellFaces(run.mesh)), faults(run.mesh, cellFaces, limitsOf()),
+          wishes(run.fitted.snaps.size()),
+          optimiser(run.mesh, cellFaces, faults, run.front, run.layers, {*run.painted.index, run.features, run.fitted.snaps, wishes}) {}
+
+    std::int64_t poor() const {
+        FaultCount count;
+        faults.poorCells(count);
+        return count.all;
+    }
+    // The free wall vertex nearest to p.
+    std::size_t nodeAt(const Vec3& p) const {
+        std::size_t best = run.front.firstInserted();
+        for (std::size_t v = 0; v < run.front.firstInserted(); ++v) {
+            if (run.fitted.snaps[v].kind != SnapKind::none) continue;
+            if (best == run.front.firstInserted() || norm2(wallPoint(run.front, v) - p) < norm2(wallPoint(run.front, best) - p)) best = v;
+        }
+        return best;
+    }
+    Vec3 wallOf(std::size_t v) const { return wallPoint(run.front, v); }
+    void put(std::size_t v, const Vec3& to) {
+        MeshNodes nodes(run.front, run.layers);
+        const MeshNode node{MeshNode::wall, static_cast<std::int32_t>(v)};
+        MeshNodes::Moved moved;
+        nodes.follow(node, to, moved);
+        std::vector<std::int32_t> points, seeds;
+        for (const auto& [p, x] : moved) run.mesh.points[static_cast<std::size_t>(p)] = x, points.push_back(p);
+        for (std::int32_t f = 0; f < run.mesh.faces(); ++f) {
+            const auto face = run.mesh.face(f);
+            if (std::ranges::find(face, points.back()) != face.end()) seeds.push_back(run.mesh.owner[static_cast<std::size_t>(f)]);
+        }
+        faults.update(points, seeds);
+        nodes.moveTo(node, to);
+    }
+    double offWall(std::size_t v) const { return run.painted.index->closest(wallOf(v)).distance; }
+    ToMesh run;
+    Rows cellFaces;
+    MeshFaults faults;
+    std::vector<Snap> wishes;
+    Optimiser optimiser;
+};
+
+// The worst share of a limit over the whole mesh, as the report has it.
+double worstShare(const PolyMesh& mesh) {
+    constexpr double degree = std::numbers::pi / 180;
+    const QualityLimits l = limitsOf();
+    const QualityReport q = measureQuality(mesh);
+    const double ortho = (1 - std::cos(q.maxNonOrthogonality * degree)) / (1 - std::cos(l.nonOrthogonality * degree));
+    return std::max({ortho, q.maxSkewness / l.skewness, l.faceWeight / q.minFaceWeight, l.volumeRatio / q.minVolumeRatio,
+                     l.determinant / q.minDeterminant});
+}
+
+// Places amid the sides of the box, away from edges and border, each with a way along its side.
+struct Spot { Vec3 place, along; };
+const std::vector<Spot> spots{{{0.6, 0.2, 0.6}, {1, 0.3, 0}}, {{-0.5, -0.3, 0.6}, {0.2, 1, 0}}, {{1, 0.1, 0.1}, {0, 1, 0.4}},
+                              {{-1, -0.2, 0}, {0, 0.5, -1}}, {{-0.6, 0.8, 0.1}, {-1, 0, 0.1}}, {{0.5, 0.4, -0.6}, {1, -1, 0}}};
+
+std::vector<std::size_t> displaceAlong(Boxed& b) {
+    std::vector<std::size_t> moved;
+    for (const Spot& s : spots) {
+        const std::size_t v = b.nodeAt(s.place);
+        b.put(v, b.wallOf(v) + normalized(s.along) * (1.1 * stagesSize));
+        moved.push_back(v);
+    }
+    return moved;
+}
+
+TEST(Optimise, MendMakesPoorFacesVanish) {
+    Boxed b;
+    ASSERT_EQ(b.poor(), 0);
+    const std::vector<std::size_t> moved = displaceAlong(b);
+    ASSERT_TRUE(b.faults.badCells().empty());
+    const std::int64_t poor = b.poor();
+    ASSERT_GT(poor, 5);
+    double worst = worstShare(b.run.mesh);
+    EXPECT_GT(worst, 1);
+    std::int64_t moves = 0;
+    for (int sweep = 0; sweep < 12; ++sweep) {
+        moves += b.optimiser.mend(1);
+        const double now = worstShare(b.run.mesh);
+        EXPECT_LE(now, worst * (1 + 1e-12)) << "sweep " << sweep;
+        worst = now;
+    }
+    EXPECT_GT(moves, 0);
+    EXPECT_EQ(b.poor(), 0);
+    EXPECT_LE(worst, 1);
+    EXPECT_EQ(b.optimiser.mend(1), 0); // nothing left to do
+    EXPECT_TRUE(b.faults.badCells().empty());
+    EXPECT_EQ(b.run.mesh.validate(), "");
+    for (const std::size_t v : moved) EXPECT_LT(b.offWall(v), 1e-9); // wall nodes glide on the wall
+    // What was kept up to date is what a fresh look says, and the front is the mesh's.
+    EXPECT_TRUE(MeshFaults(b.run.mesh, b.cellFaces, limitsOf()).badCells().empty());
+    EXPECT_EQ(assemble({b.run.lattice, b.run.kept, b.run.front, b.run.layers, b.run.painted.soup.parts}).checksum(), b.run.mesh.checksum());
+}
+
+TEST(Optimise, PullInBringsNodesBack) {
+    Boxed b;
+    std::vector<std::size_t> moved;
+    for (const Spot& s : spots) {
+        moved.push_back(b.nodeAt(s.place));
+        const std::size_t v = moved.back();
+        b.put(v, b.wallOf(v) + (b.run.front.front[v] - b.wallOf(v)) * 0.4);
+        EXPECT_GT(b.offWall(v), 0.02 * stagesSize);
+    }
+    EXPECT_GE(b.optimiser.pullIn(3), static_cast<std::int64_t>(spots.size()));
+    for (const std::size_t v : moved) EXPECT_LT(b.offWall(v), 1e-9);
+    EXPECT_EQ(b.poor(), 0);
+    EXPECT_TRUE(b.faults.badCells().empty());
+    EXPECT_EQ(b.run.mesh.validate(), "");
+    EXPECT_EQ(assemble({b.run.lattice, b.run.kept, b.run.front, b.run.layers, b.run.painted.soup.parts}).checksum(), b.run.mesh.checksum());
+}
+
+// A line beside a node takes it; one that no valid cell could reach does not; a node that is held already stays.
+TEST(Optimise, SnapWishedMovesNodesToTheirLine) {
+    Boxed b;
+    const std::size_t near = b.nodeAt({0.6, 0.2, 0.6}), far = b.nodeAt({-0.5, -0.3, 0.6}), held = b.nodeAt({1, 0.1, 0.1});
+    const Vec3 heldAt = b.wallOf(held), farAt = b.wallOf(far);
+    const Vec3 along{0, 1, 0}, through = b.wallOf(near) + Vec3{0.15 * stagesSize, 0.1 * stagesSize, 0};
+    b.wishes[near] = {SnapKind::implicitLine, through, along};
+    b.wishes[far] = {SnapKind::implicitLine, farAt + Vec3{3 * stagesSize, 0, 0}, along};
+    b.wishes[held] = {SnapKind::implicitLine, heldAt + Vec3{0, 0.1 * stagesSize, 0}, {0, 0, 1}};
+    b.run.fitted.snaps[held] = {SnapKind::corner, heldAt, {}};
+    EXPECT_EQ(b.optimiser.snapWished(2), 1);
+    const Vec3 way = b.wallOf(near) - through;
+    EXPECT_LT(norm(way - along * dot(way, along)), 1e-12);
+    EXPECT_LT(b.offWall(near), 1e-12);
+    EXPECT_EQ(b.run.fitted.snaps[near].kind, SnapKind::implicitLine);
+    EXPECT_EQ(b.wallOf(far), farAt);
+    EXPECT_EQ(b.run.fitted.snaps[far].kind, SnapKind::none);
+    EXPECT_EQ(b.wallOf(held), heldAt);
+    EXPECT_EQ(b.run.fitted.snaps[held].kind, SnapKind::corner);
+    EXPECT_EQ(b.poor(), 0);
+    EXPECT_TRUE(b.faults.badCells().empty());
+}
+
+TEST(Optimise, SameOnAnyNumberOfThreads) {
+    std::uint64_t sum = 0;
+    for (const std::size_t threads : {1u, 2u, 3u}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        Boxed b;
+        displaceAlong(b);
+        EXPECT_GT(b.optimiser.mend(12), 0);
+        const std::size_t v = b.nodeAt({0.1, -0.4, -0.6});
+        b.put(v, b.wallOf(v) + (b.run.front.front[v] - b.wallOf(v)) * 0.4);
+        EXPECT_GT(b.optimiser.pullIn(3), 0);
+        if (threads == 1) sum = b.run.mesh.checksum();
+        EXPECT_EQ(b.run.mesh.checksum(), sum) << threads << " threads";
+    }
+}
+
+} // namespace
+} // namespace i2b::test
