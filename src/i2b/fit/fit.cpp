@@ -73,6 +73,20 @@ void activateSnapped(const Band& band, const std::vector<Snap>& snaps, std::vect
     for (std::size_t n = 0; n < band.movable; ++n) active[n] = active[n] || around[n];
 }
 
+// Nodes that should be on a feature besides, and vertices where edges still cross one.
+void seekOnce(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x,
+              const std::vector<Snap>& snaps, FitSummary& summary) {
+    summary.wishes = snaps;
+    snapToFeatures(band, front, index, features, x, summary.wishes);
+    summary.inserted = insertVertices(front, band, index, features, x, snaps);
+    for (std::size_t n = 0; n < band.walls; ++n) {
+        if (snaps[n].kind != SnapKind::none) summary.wishes[n] = {};
+    }
+    for (const Front::Inserted& i : front.inserted) {
+        for (std::int32_t end : i.ends) summary.wishes[static_cast<std::size_t>(end)] = {};
+    }
+}
+
 } // namespace
 
 FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& index, const FeatureGraph& graph,
@@ -124,17 +138,7 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     for (const Snap& s : snaps) summary.snapped += s.kind != SnapKind::none;
     for (std::uint8_t a : active) summary.active += a;
     store(band, x, front);
-    if (options.features) {
-        summary.wishes = snaps;
-        snapToFeatures(band, front, index, features, x, summary.wishes);
-        summary.inserted = insertVertices(front, band, index, features, x, snaps);
-        for (std::size_t n = 0; n < band.walls; ++n) {
-            if (snaps[n].kind != SnapKind::none) summary.wishes[n] = {};
-        }
-        for (const Front::Inserted& i : front.inserted) {
-            for (std::int32_t end : i.ends) summary.wishes[static_cast<std::size_t>(end)] = {};
-        }
-    }
+    if (options.features) seekOnce(front, band, index, features, x, snaps, summary);
     summary.snaps = std::move(snaps);
     return summary;
 }

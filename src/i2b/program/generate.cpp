@@ -45,6 +45,32 @@ void requireValid(const std::string& fault, const char* what) {
         throw Error(ErrorKind::internal, fmt::format("{}: {}", what, fault), "", "please report the case");
 }
 
+// What the mesh has come to, by itself and beside the geometry.
+void judge(MeshResult& out, const FeatureGraph& features, const FitSummary& fitted, const RepairSummary& repaired, Context& context) {
+    const SurfaceIndex& index = *out.cartesian->index;
+    out.report.quality = stage(
+        context, "quality", [&] { return measureQuality(out.mesh); },
+        [](const QualityReport& q) { return q.cells; });
+    out.report.fit = stage(
+        context, "fit quality",
+        [&] {
+            const FitReport fit = measureFit(out.mesh, index, features, {}, &out.wallNodes);
+            // Wall points follow each other as the vertices of the front do.
+            out.offCauses = settleCauses(out.wallNodes, fitted.offCauses, repaired.retreatedWalls);
+            out.report.offGeometry = listOffPlaces(out.mesh, out.wallNodes, out.offCauses, index);
+            return fit;
+        },
+        [](const FitReport& f) { return f.wallNodes; });
+    out.report.stages = context.stages();
+    out.report.cells = out.mesh.cells;
+    out.report.faces = out.mesh.faces();
+    out.report.points = static_cast<std::int64_t>(out.mesh.points.size());
+    out.report.patches = out.mesh.patches;
+    Checksum sum;
+    sum.add(out.mesh.checksum());
+    out.report.checksum = sum.hex();
+}
+
 } // namespace
 
 std::unique_ptr<GridResult> generateGrid(const Options& options, Context& context, Road road) {
@@ -130,8 +156,10 @@ MeshResult generate(const Options& options, Context& context) {
         context, "layers", [&] { return makeLayers(front, plans); }, [](const LayerStack& l) { return l.cells(); });
     out.mesh = stage(
         context, "assemble", [&] { return assemble({*lattice, c.kept, front, layers, c.surface.parts}); }, [](const PolyMesh& m) { return m.cells; });
-    const RepairSummary repaired = stage(context, "repair", [&] { return repair(out.mesh, front, *lattice, layers, startThickness, {*c.index, FeatureIndex(features), fitted.snaps, fitted.wishes}); },
-                                         [](const RepairSummary& r) { return r.retracted; });
+    const RepairSummary repaired = stage(
+        context, "repair",
+        [&] { return repair(out.mesh, front, *lattice, layers, startThickness, {*c.index, FeatureIndex(features), fitted.snaps, fitted.wishes}); },
+        [](const RepairSummary& r) { return r.retracted; });
     if (repaired.remaining > 0) {
         throw Error(ErrorKind::internal, fmt::format("{} cells could not be made valid", repaired.remaining), "", "please report the case");
     }
@@ -144,27 +172,7 @@ MeshResult generate(const Options& options, Context& context) {
     out.report.wallFaces = static_cast<std::int64_t>(front.ownerCell.size());
     front = {}, layers = {}; // from here on the mesh speaks for itself
     lattice.reset();
-    out.report.quality = stage(
-        context, "quality", [&] { return measureQuality(out.mesh); },
-        [](const QualityReport& q) { return q.cells; });
-    out.report.fit = stage(
-        context, "fit quality",
-        [&] {
-            const FitReport fit = measureFit(out.mesh, *c.index, features, {}, &out.wallNodes);
-            // Wall points follow each other as the vertices of the front do.
-            out.offCauses = settleCauses(out.wallNodes, fitted.offCauses, repaired.retreatedWalls);
-            out.report.offGeometry = listOffPlaces(out.mesh, out.wallNodes, out.offCauses, *c.index);
-            return fit;
-        },
-        [](const FitReport& f) { return f.wallNodes; });
-    out.report.stages = context.stages();
-    out.report.cells = out.mesh.cells;
-    out.report.faces = out.mesh.faces();
-    out.report.points = static_cast<std::int64_t>(out.mesh.points.size());
-    out.report.patches = out.mesh.patches;
-    Checksum sum;
-    sum.add(out.mesh.checksum());
-    out.report.checksum = sum.hex();
+    judge(out, features, fitted, repaired, context);
     return out;
 }
 

@@ -12,6 +12,7 @@ constexpr int gentleRounds = 12;  // then the points of a bad cell go back whole
 constexpr int lastRound = 40;
 constexpr int qualityRounds = 14;
 constexpr double qualityStep = 0.2;
+constexpr int settleRounds = 3;
 constexpr int mendSweeps = 12;
 constexpr int wishSweeps = 2;
 constexpr int pullSweeps = 3;
@@ -280,22 +281,27 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, c
     summary.poorFaces = poor.all;
     const std::vector<Vec3> before = wallPositions(front);
     Optimiser optimiser(mesh, cellFaces, faults, front, layers, guide);
-    if (summary.badCells > 0 || summary.poorFaces > 0) {
-        summary.moves += optimiser.mend(mendSweeps);
+    const auto isClean = [&] {
         faults.poorCells(poor);
-    }
-    if (poor.all > 0 || !faults.badCells().empty()) {
-        Nodes nodes(front, lattice, layers, startThickness);
-        retreatFromFaults(mesh, cellFaces, faults, nodes, summary);
-        nodes.store(front);
-        for (float b : nodes.beta) summary.retracted += b < 1;
-    }
+        return poor.all == 0 && faults.badCells().empty();
+    };
+    // What single moves do not mend steps back; from there they may.
+    const auto settle = [&] {
+        for (int round = 0; round < settleRounds && !isClean(); ++round) {
+            summary.moves += optimiser.mend(mendSweeps);
+            if (isClean()) return;
+            Nodes nodes(front, lattice, layers, startThickness);
+            retreatFromFaults(mesh, cellFaces, faults, nodes, summary);
+            nodes.store(front);
+            for (float beta : nodes.beta) summary.retracted += beta < 1;
+        }
+    };
+    settle();
     if (summary.remaining > 0) return summary;
     summary.moves += optimiser.snapWished(wishSweeps);
     summary.moves += optimiser.pullIn(pullSweeps);
-    faults.poorCells(poor);
-    if (poor.all > 0) summary.moves += optimiser.mend(mendSweeps); // what the retreat has left, from where it now is
-    faults.poorCells(poor);
+    settle();
+    isClean();
     summary.poorRemaining = poor.all;
     const std::vector<Vec3> after = wallPositions(front);
     for (std::size_t v = 0; v < after.size(); ++v) summary.retreatedWalls.push_back(!(after[v] == before[v]));
