@@ -13,14 +13,17 @@ constexpr double settled = 0.01;      // of h: nodes nearer to the geometry are 
 constexpr double offWall = 0.005;     // of h: nodes farther off are pulled in
 constexpr double crossing = 0.05;     // of h: so near to its end a way may meet geometry
 constexpr double leastGain = 1e-3;    // of the sum: what a move must bring
-constexpr double leastEdge = 0.015;    // of h: no nearer may a node come to another for the wall's sake
+constexpr double leastEdge = 0.015;   // of h: no nearer may a node come to another for the wall's sake
 constexpr double nearLimit = 0.98;    // of a limit: a node on its way to the wall may bring its cells up to there
+constexpr int patience = 2;           // sweeps, then
+constexpr std::int64_t many = 200;    // faults of which more than
+constexpr double stalled = 0.9;       // this share is left by a sweep are given up
+constexpr std::array<double, 5> stepLengths{0.25, 0.12, 0.06, 0.03, 0.015}; // of h
+
 // A move for the wall's sake keeps to the limits, or makes nothing worse where they are broken already.
 bool mayStand(const Badness& now, const Badness& before) {
     return !now.invalid && (now.worst <= nearLimit || (now.worst <= before.worst && now.sum <= before.sum));
 }
-
-constexpr std::array<double, 5> stepLengths{0.25, 0.12, 0.06, 0.03, 0.015}; // of h
 
 } // namespace
 
@@ -254,11 +257,13 @@ std::int64_t Optimiser::sweep(std::vector<Task>& tasks, const Move& move) {
 }
 
 std::int64_t Optimiser::mend(int sweeps) {
-    std::int64_t moves = 0;
+    std::int64_t moves = 0, before = 0;
     for (int i = 0; i < sweeps; ++i) {
         FaultCount count;
         std::vector<std::int32_t> cells = faults_.badCells();
         const std::vector<std::int32_t> poor = faults_.poorCells(count);
+        if (i >= patience && count.all > many && static_cast<double>(count.all) > stalled * static_cast<double>(before)) break;
+        before = count.all;
         cells.insert(cells.end(), poor.begin(), poor.end());
         std::vector<Task> tasks = tasksOf(cells);
         const std::int64_t now = sweep(tasks, [&](const Task& t, Worker& w) { return mendNode(t, w); });

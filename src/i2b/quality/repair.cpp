@@ -2,6 +2,7 @@
 #include "i2b/core/parallel.h"
 #include "i2b/quality/mesh_faults.h"
 #include <algorithm>
+#include <limits>
 
 namespace i2b {
 namespace {
@@ -13,6 +14,7 @@ constexpr int lastRound = 40;
 constexpr int qualityRounds = 14;
 constexpr double qualityStep = 0.2;
 constexpr int settleRounds = 3;
+constexpr std::int64_t manyFaults = 200;
 constexpr int mendSweeps = 12;
 constexpr int wishSweeps = 2;
 constexpr int pullSweeps = 3;
@@ -287,7 +289,9 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, c
     };
     // What single moves do not mend steps back; from there they may.
     const auto settle = [&] {
-        for (int round = 0; round < settleRounds && !isClean(); ++round) {
+        std::int64_t before = std::numeric_limits<std::int64_t>::max();
+        for (int round = 0; round < settleRounds && !isClean() && (poor.all < before || !faults.badCells().empty()); ++round) {
+            before = poor.all > manyFaults ? poor.all / 2 : std::numeric_limits<std::int64_t>::max(); // many that stay are given up
             summary.moves += optimiser.mend(mendSweeps);
             if (isClean()) return;
             Nodes nodes(front, lattice, layers, startThickness);
