@@ -11,8 +11,8 @@ namespace {
 
 // What the wall has reached, as fractions: no run may fall below captured (of the resolvable sharp edges) and nodes (within
 // 0.01 h of the geometry), nor rise above tilted. The aim is 0.99 of the edges on every shape: bars are raised as the fit
-// improves, and not lowered. Captured is the worst of six runs of the benchmark (three poses, two sizes) less 0.03. Nodes are
-// asked for 0.93 at most: a wall that takes up edges which it passed by before has more nodes that are held back.
+// improves, and not lowered. From the worst of six runs of the benchmark (three poses, two sizes): captured less 0.03, nodes less
+// 0.02 and at most 0.98, tilted and 0.02 more.
 struct Bar {
     const char* shape;
     Side side;
@@ -20,41 +20,41 @@ struct Bar {
 };
 
 const Bar bars[] = {
-    {"box", Side::outside, 0.95, 0.89, 0.02},
-    {"box", Side::inside, 0.95, 0.91, 0.05},
-    {"cylinder", Side::outside, 0.92, 0.92, 0.02},
-    {"cylinder", Side::inside, 0.92, 0.93, 0.02},
-    {"cone", Side::outside, 0.89, 0.86, 0.02},
-    {"cone", Side::inside, 0.86, 0.93, 0.19},
-    {"step", Side::outside, 0.94, 0.85, 0.02},
-    {"step", Side::inside, 0.90, 0.90, 0.04},
-    {"crossed-boxes", Side::outside, 0.87, 0.80, 0.06},
-    {"pipe-tee", Side::outside, 0.92, 0.93, 0.02},
-    {"wedge-20", Side::outside, 0.88, 0.85, 0.02},
-    {"wedge-20", Side::inside, 0.90, 0.92, 0.35},
-    {"half-cell-slab", Side::outside, 0.58, 0.75, 0.02},
-    {"plate", Side::outside, 0.61, 0.68, 0.02},
-    {"free-sheet", Side::outside, 0.79, 0.76, 0.04},
-    {"nested-spheres", Side::inside, 0.00, 0.93, 0.02},
-    {"cracked-cube", Side::outside, 0.68, 0.93, 0.02},
-    {"cracked-cube", Side::inside, 0.91, 0.93, 0.13},
-    {"tetrahedron", Side::outside, 0.93, 0.80, 0.02},
-    {"tetrahedron", Side::inside, 0.89, 0.93, 0.32},
-    {"rhombic-dodecahedron", Side::outside, 0.95, 0.93, 0.02},
-    {"rhombic-dodecahedron", Side::inside, 0.95, 0.93, 0.04},
-    {"deltoidal-icositetrahedron", Side::outside, 0.96, 0.93, 0.02},
-    {"deltoidal-icositetrahedron", Side::inside, 0.95, 0.93, 0.02},
-    {"triakis-tetrahedron", Side::outside, 0.95, 0.93, 0.02},
-    {"triakis-tetrahedron", Side::inside, 0.92, 0.91, 0.02},
-    {"stella-octangula", Side::outside, 0.88, 0.73, 0.02},
-    {"stella-octangula", Side::inside, 0.85, 0.65, 0.65},
-    {"two-tetrahedra", Side::outside, 0.90, 0.71, 0.02},
-    {"small-stellated-dodecahedron", Side::outside, 0.92, 0.81, 0.02},
-    {"small-stellated-dodecahedron", Side::inside, 0.90, 0.79, 0.02},
-    {"gear", Side::outside, 0.83, 0.77, 0.05},
-    {"gear", Side::inside, 0.74, 0.81, 0.33},
-    {"helical-gear", Side::outside, 0.85, 0.81, 0.02},
-    {"helical-gear", Side::inside, 0.86, 0.81, 0.20},
+    {"box", Side::outside, 0.95, 0.97, 0.02},
+    {"box", Side::inside, 0.95, 0.97, 0.02},
+    {"cylinder", Side::outside, 0.94, 0.97, 0.02},
+    {"cylinder", Side::inside, 0.97, 0.98, 0.02},
+    {"cone", Side::outside, 0.93, 0.97, 0.02},
+    {"cone", Side::inside, 0.86, 0.98, 0.02},
+    {"step", Side::outside, 0.96, 0.97, 0.02},
+    {"step", Side::inside, 0.95, 0.97, 0.02},
+    {"crossed-boxes", Side::outside, 0.89, 0.97, 0.04},
+    {"pipe-tee", Side::outside, 0.95, 0.97, 0.02},
+    {"wedge-20", Side::outside, 0.91, 0.96, 0.02},
+    {"wedge-20", Side::inside, 0.90, 0.97, 0.09},
+    {"half-cell-slab", Side::outside, 0.75, 0.96, 0.02},
+    {"plate", Side::outside, 0.67, 0.92, 0.02},
+    {"free-sheet", Side::outside, 0.84, 0.96, 0.03},
+    {"nested-spheres", Side::inside, 0.00, 0.98, 0.02},
+    {"cracked-cube", Side::outside, 0.75, 0.97, 0.02},
+    {"cracked-cube", Side::inside, 0.92, 0.97, 0.02},
+    {"tetrahedron", Side::outside, 0.95, 0.97, 0.02},
+    {"tetrahedron", Side::inside, 0.89, 0.98, 0.02},
+    {"rhombic-dodecahedron", Side::outside, 0.96, 0.97, 0.02},
+    {"rhombic-dodecahedron", Side::inside, 0.96, 0.98, 0.02},
+    {"deltoidal-icositetrahedron", Side::outside, 0.96, 0.97, 0.02},
+    {"deltoidal-icositetrahedron", Side::inside, 0.96, 0.97, 0.02},
+    {"triakis-tetrahedron", Side::outside, 0.95, 0.97, 0.02},
+    {"triakis-tetrahedron", Side::inside, 0.92, 0.98, 0.02},
+    {"stella-octangula", Side::outside, 0.90, 0.97, 0.02},
+    {"stella-octangula", Side::inside, 0.88, 0.97, 0.05},
+    {"two-tetrahedra", Side::outside, 0.90, 0.97, 0.02},
+    {"small-stellated-dodecahedron", Side::outside, 0.92, 0.97, 0.02},
+    {"small-stellated-dodecahedron", Side::inside, 0.91, 0.97, 0.02},
+    {"gear", Side::outside, 0.84, 0.97, 0.02},
+    {"gear", Side::inside, 0.76, 0.97, 0.04},
+    {"helical-gear", Side::outside, 0.85, 0.97, 0.02},
+    {"helical-gear", Side::inside, 0.86, 0.97, 0.04},
 };
 
 std::string nameOf(const Bar& bar) {
