@@ -56,7 +56,7 @@ void judge(MeshResult& out, const FeatureGraph& features, const FitSummary& fitt
         [&] {
             const FitReport fit = measureFit(out.mesh, index, features, {}, &out.wallNodes);
             // Wall points follow each other as the vertices of the front do.
-            out.offCauses = settleCauses(out.wallNodes, fitted.offCauses, repaired.retreatedWalls);
+            out.offCauses = settleCauses(out.wallNodes, fitted.offCauses, repaired.movedWalls);
             out.report.offGeometry = listOffPlaces(out.mesh, out.wallNodes, out.offCauses, index);
             return fit;
         },

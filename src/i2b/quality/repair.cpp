@@ -281,7 +281,7 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, c
     faults.poorCells(poor);
     summary.badCells = static_cast<std::int64_t>(faults.badCells().size());
     summary.poorFaces = poor.all;
-    const std::vector<Vec3> before = wallPositions(front);
+    const std::vector<Vec3> walls = wallPositions(front);
     Optimiser optimiser(mesh, cellFaces, faults, front, layers, guide);
     const auto isClean = [&] {
         faults.poorCells(poor);
@@ -289,9 +289,10 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, c
     };
     // What single moves do not mend steps back; from there they may.
     const auto settle = [&] {
-        std::int64_t before = std::numeric_limits<std::int64_t>::max();
-        for (int round = 0; round < settleRounds && !isClean() && (poor.all < before || !faults.badCells().empty()); ++round) {
-            before = poor.all > manyFaults ? poor.all / 2 : std::numeric_limits<std::int64_t>::max(); // many that stay are given up
+        constexpr std::int64_t any = std::numeric_limits<std::int64_t>::max();
+        std::int64_t goOnBelow = any; // many faults that stay are given up
+        for (int round = 0; round < settleRounds && !isClean() && (poor.all < goOnBelow || !faults.badCells().empty()); ++round) {
+            goOnBelow = poor.all > manyFaults ? poor.all / 2 : any;
             summary.moves += optimiser.mend(mendSweeps);
             if (isClean()) return;
             Nodes nodes(front, lattice, layers, startThickness);
@@ -308,7 +309,7 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, c
     isClean();
     summary.poorRemaining = poor.all;
     const std::vector<Vec3> after = wallPositions(front);
-    for (std::size_t v = 0; v < after.size(); ++v) summary.retreatedWalls.push_back(!(after[v] == before[v]));
+    for (std::size_t v = 0; v < after.size(); ++v) summary.movedWalls.push_back(!(after[v] == walls[v]));
     return summary;
 }
 

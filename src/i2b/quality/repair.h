@@ -1,8 +1,10 @@
-// The last guard of validity. The fit judges cells by their corners, which is nearly, not quite, OpenFOAM's measure:
-// where a cell of the assembled mesh has no positive volume or a face pyramid of it points the wrong way, the points
-// around it step back towards the start of the fit, where every cell is right by construction, and so on until none
-// is left. The slope of the retreat is bounded, so that it ends smoothly. Then faces over the limits of quality get the
-// same, as far as it helps: a node that is a little off the wall is worth less than a mesh that passes its checks.
+// The last guard of validity. The fit judges cells by their corners, which is nearly, not quite, OpenFOAM's measure: nodes
+// of wrong and poor cells are moved by that measure (optimise.h). Where a cell still has no positive volume or a face
+// pyramid of it points the wrong way, the points around it step back towards the start of the fit, where every cell is
+// right by construction, and so on until none is left. The slope of the retreat is bounded, so that it ends smoothly. Faces
+// still over the limits of quality get the same, as far as it helps: a node that is a little off the wall is worth less
+// than a mesh that passes its checks. At the end wall nodes go on to their features and onto the geometry where no limit
+// forbids it.
 #pragma once
 #include "i2b/quality/optimise.h"
 #include <cstdint>
@@ -19,7 +21,7 @@ struct RepairSummary {
     std::int64_t poorFaces = 0;  // faces over the limits of non-orthogonality, skewness, weight or volume ratio at the
                                  // beginning, and cells of small determinant
     std::int64_t poorRemaining = 0;
-    std::vector<std::uint8_t> retreatedWalls; // per vertex of the front: its wall position was changed
+    std::vector<std::uint8_t> movedWalls; // per vertex of the front: its wall position was changed
 };
 
 // startThickness: what buildFront() was given. Moves points of mesh, and front positions alike.
