@@ -352,8 +352,7 @@ std::vector<Vec3> Assembler::placePoints() const {
         points[static_cast<std::size_t>(front.corePoint[v])] = front.front[v];
     }
     parallelFor(front.front.size(), [&](std::size_t v) {
-        const auto& p = front.mesh.point(FrontMesh::VertexHandle(static_cast<int>(v)));
-        placeLayers(in_.layers, v, front.front[v], {p[0], p[1], p[2]}, &points[core + in_.layers.pointOffset(v)]);
+        placeLayers(in_.layers, v, front.front[v], front.wall(v), &points[core + in_.layers.pointOffset(v)]);
     });
     return points;
 }

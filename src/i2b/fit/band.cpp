@@ -212,9 +212,8 @@ Band buildBand(const LatticeMesh& mesh, const Front& front, int rings) {
     band.walls = front.front.size();
     band.start.resize(band.walls), band.reach.resize(band.walls);
     parallelFor(band.walls, [&](std::size_t v) {
-        const auto& p = front.mesh.point(FrontMesh::VertexHandle(static_cast<int>(v)));
         const Vec3& s = front.size[v];
-        band.start[v] = {p[0], p[1], p[2]};
+        band.start[v] = front.wall(v);
         band.reach[v] = std::max(s.x, std::max(s.y, s.z));
     });
     band.h = front.h;

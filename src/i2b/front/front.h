@@ -46,6 +46,10 @@ struct Front {
     std::vector<float> movedSize;                  // m, smallest edge of the cells around
     std::vector<std::uint8_t> movedOutside;        // as outside
 
+    Vec3 wall(std::size_t vertex) const {          // m, position on the wall
+        const auto& p = mesh.point(FrontMesh::VertexHandle(static_cast<int>(vertex)));
+        return {p[0], p[1], p[2]};
+    }
     std::size_t firstInserted() const { return front.size() - inserted.size(); } // vertex
     // "" or the first fault: open edges away from the domain's sides, isolated vertices, sizes of arrays.
     std::string validate() const;

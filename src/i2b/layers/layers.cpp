@@ -69,8 +69,7 @@ void requireFew(std::uint64_t labels) {
 } // namespace
 
 double roomAt(const Front& front, std::size_t vertex) {
-    const auto& p = front.mesh.point(vertexAt(vertex));
-    return norm(Vec3{p[0], p[1], p[2]} - front.front[vertex]);
+    return norm(front.wall(vertex) - front.front[vertex]);
 }
 
 WallPlans plansOf(const LayerOptions& options, const std::vector<Part>& parts) {

@@ -54,7 +54,7 @@ void MeshNodes::nodesOf(std::int32_t point, std::vector<MeshNode>& out) const {
 
 Vec3 MeshNodes::place(const MeshNode& node) const {
     if (node.kind == MeshNode::core) return front_.movedTo[Index(node.id)];
-    if (node.kind == MeshNode::wall) return wallOf(node.id);
+    if (node.kind == MeshNode::wall) return front_.wall(Index(node.id));
     return front_.front[Index(*fansOf(node.id).first)];
 }
 
@@ -84,7 +84,7 @@ void MeshNodes::follow(const MeshNode& node, const Vec3& to, Moved& out) const {
     out.emplace_back(node.id, to);
     const auto [first, last] = fansOf(node.id);
     for (const std::int32_t* v = first; v != last; ++v) {
-        stack(*v, to, wallOf(*v), out);
+        stack(*v, to, front_.wall(Index(*v)), out);
         auto child = std::lower_bound(children_.begin(), children_.end(), Child{*v, 0});
         for (; child != children_.end() && child->parent == *v; ++child) {
             const Front::Inserted& i = front_.inserted[Index(child->vertex) - front_.firstInserted()];
@@ -92,7 +92,7 @@ void MeshNodes::follow(const MeshNode& node, const Vec3& to, Moved& out) const {
             const Vec3 other = front_.front[Index(i.ends[atFirst ? 1 : 0])];
             const Vec3 place = atFirst ? to + (other - to) * i.t : other + (to - other) * i.t;
             out.emplace_back(front_.corePoint[Index(child->vertex)], place);
-            stack(child->vertex, place, wallOf(child->vertex), out);
+            stack(child->vertex, place, front_.wall(Index(child->vertex)), out);
         }
     }
 }

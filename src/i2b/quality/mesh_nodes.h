@@ -37,10 +37,6 @@ class MeshNodes {
   private:
     struct Fan { std::int32_t point, vertex; friend auto operator<=>(const Fan&, const Fan&) = default; };
     struct Child { std::int32_t parent, vertex; friend auto operator<=>(const Child&, const Child&) = default; };
-    Vec3 wallOf(std::int32_t vertex) const {
-        const auto& p = front_.mesh.point(FrontMesh::VertexHandle(vertex));
-        return {p[0], p[1], p[2]};
-    }
     void stack(std::int32_t vertex, const Vec3& front, const Vec3& wall, Moved& out) const;
     std::int32_t movedPlace(std::int32_t point) const; // in Front::movedPoints, or -1
 

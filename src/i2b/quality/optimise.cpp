@@ -94,19 +94,15 @@ bool Optimiser::isFree(const MeshNode& node, const Vec3& to) const {
         if (!(length > off)) return false;
         return bool(guide_.index.firstHit(f, b, 1 - off / length));
     };
-    const auto wallOf = [&](std::int32_t v) {
-        const auto& p = front_.mesh.point(FrontMesh::VertexHandle(v));
-        return Vec3{p[0], p[1], p[2]};
-    };
     if (node.kind == MeshNode::core) return true;
     if (node.kind == MeshNode::wall) {
         const auto v = Index(node.id);
-        return !crosses(front_.front[v], to, front_.h[v]) || crosses(front_.front[v], wallOf(node.id), front_.h[v]);
+        return !crosses(front_.front[v], to, front_.h[v]) || crosses(front_.front[v], front_.wall(Index(node.id)), front_.h[v]);
     }
     const auto [first, last] = nodes_.fansOf(node.id);
     return std::all_of(first, last, [&](std::int32_t v) {
         const double h = front_.h[Index(v)];
-        return !crosses(to, wallOf(v), h) || crosses(front_.front[Index(v)], wallOf(v), h);
+        return !crosses(to, front_.wall(Index(v)), h) || crosses(front_.front[Index(v)], front_.wall(Index(v)), h);
     });
 }
 
@@ -156,8 +152,7 @@ bool Optimiser::mendNode(const Task& task, Worker& worker) {
 
 bool Optimiser::targetOf(std::int32_t vertex, Vec3& target) const {
     const auto v = Index(vertex);
-    const auto& p = front_.mesh.point(FrontMesh::VertexHandle(vertex));
-    const Vec3 b{p[0], p[1], p[2]};
+    const Vec3 b = front_.wall(v);
     const double h = front_.h[v];
     if (v < guide_.snaps.size() && guide_.snaps[v].kind != SnapKind::none) {
         target = snapLine(guide_.index, guide_.features, guide_.snaps[v], b, h).point;
@@ -277,9 +272,8 @@ std::vector<Optimiser::Task> Optimiser::tasksOff() const {
     const Index walls = front_.firstInserted();
     std::vector<std::uint8_t> off(walls, 0);
     parallelFor(walls, [&](Index v) {
-        const auto& p = front_.mesh.point(FrontMesh::VertexHandle(static_cast<int>(v)));
         Vec3 target;
-        off[v] = targetOf(static_cast<std::int32_t>(v), target) && norm(target - Vec3{p[0], p[1], p[2]}) > offWall * front_.h[v];
+        off[v] = targetOf(static_cast<std::int32_t>(v), target) && norm(target - front_.wall(v)) > offWall * front_.h[v];
     });
     return wallTasks(off);
 }

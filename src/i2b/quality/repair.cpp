@@ -50,11 +50,11 @@ class Nodes {
             const std::array<std::int8_t, 3>& d = front.direction[v];
             const Vec3 f = startOf(front.corePoint[v]);
             ahead_.push_back({f, front.front[v]});
-            wall_.push_back({f + Vec3{double(d[0]), double(d[1]), double(d[2])} * (thickness * front.h[v]), wallOf(v)});
+            wall_.push_back({f + Vec3{double(d[0]), double(d[1]), double(d[2])} * (thickness * front.h[v]), front_.wall(v)});
         }
         for (const Front::Inserted& i : front.inserted) { // on an edge, of the front and of the wall, at the start
             const auto p = static_cast<std::size_t>(i.ends[0]), q = static_cast<std::size_t>(i.ends[1]);
-            wall_.push_back({wall_[p].start + (wall_[q].start - wall_[p].start) * i.t, wallOf(wall_.size())});
+            wall_.push_back({wall_[p].start + (wall_[q].start - wall_[p].start) * i.t, front_.wall(wall_.size())});
         }
         beta.assign(core_ + fans, 1.0f);
         touched_.assign(beta.size(), 0);
@@ -80,10 +80,6 @@ class Nodes {
     std::vector<float> beta; // per node; to be changed by set()
 
   private:
-    Vec3 wallOf(std::size_t v) const {
-        const auto& p = front_.mesh.point(FrontMesh::VertexHandle(static_cast<int>(v)));
-        return {p[0], p[1], p[2]};
-    }
     // The front position of a fan now: inserted ones stay on the edge that they divide.
     Vec3 frontNow(std::size_t v) const {
         if (v < ahead_.size()) return ahead_[v].at(beta[static_cast<std::size_t>(front_.corePoint[v])]);
@@ -259,12 +255,8 @@ void retreatFromFaults(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults
 }
 
 std::vector<Vec3> wallPositions(const Front& front) {
-    std::vector<Vec3> positions;
-    positions.reserve(front.front.size());
-    for (auto v : front.mesh.vertices()) {
-        const auto& p = front.mesh.point(v);
-        positions.push_back({p[0], p[1], p[2]});
-    }
+    std::vector<Vec3> positions(front.front.size());
+    parallelFor(positions.size(), [&](std::size_t v) { positions[v] = front.wall(v); }, 4096);
     return positions;
 }
 
