@@ -1,6 +1,7 @@
 #include "i2b/fit/fit.h"
 #include "i2b/core/parallel.h"
 #include "i2b/fit/corner.h"
+#include "i2b/fit/folds.h"
 #include "i2b/fit/insert.h"
 #include "i2b/fit/off_wall.h"
 #include <algorithm>
@@ -78,6 +79,7 @@ void seekOnce(Front& front, const Band& band, const SurfaceIndex& index, const F
               const std::vector<Snap>& snaps, FitSummary& summary) {
     summary.wishes = snaps;
     snapToFeatures(band, front, index, features, x, summary.wishes);
+    snapFolds(band, front, index, features, x, summary.wishes);
     summary.inserted = insertVertices(front, band, index, features, x, snaps);
     for (std::size_t n = 0; n < band.walls; ++n) {
         if (snaps[n].kind != SnapKind::none) summary.wishes[n] = {};
@@ -116,12 +118,14 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     active = activeNodes(band, index, x);
     if (seekFeatures()) {
         snapToFeatures(band, front, index, features, x, snaps);
+        snapFolds(band, front, index, features, x, snaps);
         activateSnapped(band, snaps, active);
     }
     pull({1e3});
     active = activeNodes(band, index, x);
     const auto snapAndSplit = [&] {
         snapToFeatures(band, front, index, features, x, snaps);
+        snapFolds(band, front, index, features, x, snaps);
         store(band, x, front);
         const std::size_t split = splitAlongFeatures(front, band, index, features, x, snaps);
         summary.split += split;
