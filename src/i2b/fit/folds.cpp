@@ -9,12 +9,15 @@ namespace {
 constexpr int rounds = 2;        // nodes that were snapped in one lead on to others in the next
 constexpr double farthest = 1.2; // of h: so far a node is drawn to a feature that its neighbours are on
 constexpr double onLine = 0.2;   // of h: so near to the feature a neighbour stands on it
-constexpr double apart = 0.4;    // of h: nodes beside each other keep so far apart
+constexpr double apart = 0.4;    // of h: nodes beside each other keep so far apart; or
+constexpr double apartOnRim = 0.2; // where the faces fold back, since both sides end there
+const double foldedBack = std::cos(2.6); // 150 degrees
 
 struct Fold {
     double distance = 0; // in h
     std::int32_t node = -1;
     Snap snap;
+    double apart = 0; // in h: other nodes must be so far from the place
 };
 
 class FoldFinder {
@@ -29,7 +32,7 @@ class FoldFinder {
     bool isSnapped(std::size_t n) const { return snaps_[n].kind != SnapKind::none; }
     Snap featureNear(std::size_t n) const;
     bool goesOn(std::size_t n, const Snap& snap) const;
-    bool folds(std::size_t n) const;
+    double sharpestTurn(std::size_t n) const;
 
     const Band& band_;
     const Front& front_;
@@ -67,9 +70,10 @@ bool FoldFinder::goesOn(std::size_t n, const Snap& snap) const {
     });
 }
 
-// Do faces around a node stand on surfaces that turn?
-bool FoldFinder::folds(std::size_t n) const {
+// Of the surfaces that the faces around a node stand on: the least cosine between two that turn, else 1.
+double FoldFinder::sharpestTurn(std::size_t n) const {
     std::array<Foot, 16> feet;
+    double least = 1;
     std::size_t count = 0;
     for (auto f : front_.mesh.vf_range(FrontMesh::VertexHandle(static_cast<int>(n)))) {
         Vec3 wall{}, fluid{};
@@ -82,11 +86,11 @@ bool FoldFinder::folds(std::size_t n) const {
         if (count == feet.size()) break;
         feet[count] = footAt(index_, wall + (fluid - wall) * 0.15, fluid, band_.h[n]);
         for (std::size_t i = 0; i < count; ++i) {
-            if (turns(feet[i], feet[count])) return true;
+            if (turns(feet[i], feet[count])) least = std::min(least, dot(feet[i].normal, feet[count].normal));
         }
         ++count;
     }
-    return false;
+    return least;
 }
 
 Fold FoldFinder::foldAt(std::size_t n) const {
@@ -94,8 +98,10 @@ Fold FoldFinder::foldAt(std::size_t n) const {
     if (isSnapped(n) || band_.outside[n] != 0 || std::none_of(band_.edges[n].begin(), band_.edges[n].end(), isWallAndSnapped)) return {};
     if (!band_.parents[static_cast<std::size_t>(band_.frontNode[n])].empty()) return {};
     const Snap snap = featureNear(n);
-    if (snap.kind == SnapKind::none || !goesOn(n, snap) || !folds(n)) return {};
-    return {norm(snap.point - x_[n]) / band_.h[n], static_cast<std::int32_t>(n), snap};
+    if (snap.kind == SnapKind::none || !goesOn(n, snap)) return {};
+    const double turn = sharpestTurn(n);
+    if (turn == 1) return {};
+    return {norm(snap.point - x_[n]) / band_.h[n], static_cast<std::int32_t>(n), snap, turn < foldedBack ? apartOnRim : apart};
 }
 
 bool FoldFinder::isTaken(const Fold& fold) const {
@@ -103,7 +109,7 @@ bool FoldFinder::isTaken(const Fold& fold) const {
     for (const BandEdge& e : band_.edges[n]) {
         const auto m = static_cast<std::size_t>(e.b);
         if (m >= band_.walls || !isSnapped(m)) continue;
-        const double limit = apart * band_.h[n];
+        const double limit = fold.apart * band_.h[n];
         if (norm(x_[m] - fold.snap.point) < limit || norm(snaps_[m].point - fold.snap.point) < limit) return true;
     }
     return false;
