@@ -2,8 +2,8 @@
 // face of the front lies on one side; with the fit's own snaps and without any; the same on any number of threads.
 #include "i2b/fit/between.h"
 #include "i2b/fit/insert.h"
+#include "fit/unsnapped.h"
 #include "i2b/quality/quality_report.h"
-#include "pipeline/stages_run.h"
 #include <gtest/gtest.h>
 #include <functional>
 #include <map>
@@ -12,24 +12,7 @@
 namespace i2b::test {
 namespace {
 
-// A fit without features, and the positions of the band's nodes after it: nothing is snapped to anything.
-struct Unsnapped : ToFront {
-    explicit Unsnapped(const Surface& soup) : ToFront(soup, stagesOptions()), band(buildBand(lattice, front, 2)), snaps(band.walls) {
-        FitOptions options;
-        options.features = false;
-        fitFront(front, lattice, *painted.index, graph, options, Context());
-        x = band.start;
-        std::map<std::int32_t, Vec3> moved;
-        for (std::size_t i = 0; i < front.movedPoints.size(); ++i) moved[front.movedPoints[i]] = front.movedTo[i];
-        for (std::size_t n = band.walls; n < band.nodes(); ++n)
-            if (const auto at = moved.find(band.corePoint[n - band.walls]); at != moved.end()) x[n] = at->second;
-        for (std::size_t v = 0; v < band.walls; ++v) x[v] = wallPoint(front, v), x[static_cast<std::size_t>(band.frontNode[v])] = front.front[v];
-    }
-    std::size_t insert() { return insertVertices(front, band, *painted.index, features, x, snaps); }
-    Band band;
-    std::vector<Vec3> x;
-    std::vector<Snap> snaps;
-};
+std::size_t insert(Unsnapped& run) { return insertVertices(run.front, run.band, *run.painted.index, run.features, run.x, run.snaps); }
 
 // What holds of inserted vertices wherever they come from.
 void expectOnTheirEdges(const Front& front, const SurfaceIndex& index) {
@@ -103,7 +86,7 @@ TEST(Insert, DividesEdgesAcrossABorderOfFlushParts) {
     const Front old = run.front;
     const double clear = 0.13 * stagesSize; // crossings nearer to an end are left
     const std::size_t before = over(reachOver(run.front, borderSide), clear);
-    const std::size_t n = run.insert();
+    const std::size_t n = insert(run);
     EXPECT_GT(n, 30u);
     EXPECT_EQ(n, run.front.inserted.size());
     EXPECT_LE(8 * over(reachOver(run.front, borderSide), clear), before);
@@ -135,7 +118,7 @@ TEST(Insert, DividesEdgesAcrossSharpEdges) {
     Unsnapped run(turnedBox());
     const std::vector<std::uint8_t> none(run.front.front.size(), 0);
     const std::size_t before = straddling(run, none);
-    const std::size_t n = run.insert();
+    const std::size_t n = insert(run);
     EXPECT_GT(n, 50u);
     expectOnTheirEdges(run.front, *run.painted.index);
     for (std::size_t i = 0; i < n; ++i) {
@@ -186,7 +169,7 @@ TEST(Insert, SameOnAnyNumberOfThreads) {
         for (const std::size_t threads : {1u, 3u}) {
             const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
             Unsnapped run(soup);
-            EXPECT_GT(run.insert(), 30u);
+            EXPECT_GT(insert(run), 30u);
             if (threads == 1) sum = run.front.checksum();
             EXPECT_EQ(run.front.checksum(), sum);
         }
