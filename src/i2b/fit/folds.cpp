@@ -11,6 +11,7 @@ constexpr double farthest = 1.2; // of h: so far a node is drawn to a feature th
 constexpr double onLine = 0.2;   // of h: so near to the feature a neighbour stands on it
 constexpr double apart = 0.4;    // of h: nodes beside each other keep so far apart; or
 constexpr double apartOnRim = 0.2; // where the faces fold back, since both sides end there
+const double flat = std::cos(0.2);       // 11 degrees
 const double foldedBack = std::cos(2.6); // 150 degrees
 
 struct Fold {
@@ -32,6 +33,7 @@ class FoldFinder {
     bool isSnapped(std::size_t n) const { return snaps_[n].kind != SnapKind::none; }
     Snap featureNear(std::size_t n) const;
     bool goesOn(std::size_t n, const Snap& snap) const;
+    bool bends(std::size_t n) const;
     double sharpestTurn(std::size_t n) const;
 
     const Band& band_;
@@ -70,6 +72,24 @@ bool FoldFinder::goesOn(std::size_t n, const Snap& snap) const {
     });
 }
 
+// Do the wall's own faces around a node bend at all?
+bool FoldFinder::bends(std::size_t n) const {
+    Vec3 first{};
+    for (auto f : front_.mesh.vf_range(FrontMesh::VertexHandle(static_cast<int>(n)))) {
+        Vec3 area{}, from{}, last{};
+        int corners = 0;
+        for (auto v : front_.mesh.fv_range(f)) {
+            const Vec3& p = x_[static_cast<std::size_t>(v.idx())];
+            if (corners++ == 0) from = p;
+            else area += cross(last - from, p - from), last = p;
+            if (corners == 1) last = p;
+        }
+        if (first == Vec3{}) first = area;
+        else if (dot(first, area) < flat * norm(first) * norm(area)) return true;
+    }
+    return false;
+}
+
 // Of the surfaces that the faces around a node stand on: the least cosine between two that turn, else 1.
 double FoldFinder::sharpestTurn(std::size_t n) const {
     std::array<Foot, 16> feet;
@@ -97,6 +117,7 @@ Fold FoldFinder::foldAt(std::size_t n) const {
     const auto isWallAndSnapped = [&](const BandEdge& e) { return static_cast<std::size_t>(e.b) < band_.walls && isSnapped(static_cast<std::size_t>(e.b)); };
     if (isSnapped(n) || band_.outside[n] != 0 || std::none_of(band_.edges[n].begin(), band_.edges[n].end(), isWallAndSnapped)) return {};
     if (!band_.parents[static_cast<std::size_t>(band_.frontNode[n])].empty()) return {};
+    if (!bends(n)) return {};
     const Snap snap = featureNear(n);
     if (snap.kind == SnapKind::none || !goesOn(n, snap)) return {};
     const double turn = sharpestTurn(n);
