@@ -62,7 +62,10 @@ PolyMesh cubeWall(const std::function<Vec3(Vec3)>& move) {
 
 FitReport fit(const PolyMesh& mesh, const Surface& surface,
               const std::vector<std::string>& patches = {"body", "top"}) {
-    return measureFit(mesh, SurfaceIndex(surface), buildFeatureGraph(surface, {}), patches);
+    const SurfaceIndex index(surface);
+    FitReport report = measureFit(mesh, index, buildFeatureGraph(surface, {}), patches);
+    measurePartBorders(mesh, index, patches, report);
+    return report;
 }
 
 // A wall exactly on the geometry gets full marks, and the samples are those of the definition: every h/4 of
@@ -162,31 +165,55 @@ TEST(FitMeasure, patches) {
     EXPECT_EQ(fit(mesh, Surface{}).wallNodesOnGeometryFraction, 1);
 }
 
-// The top is a part of its own: the 4 n edges around it, four samples each, lie on its border; with the border of the
-// geometry a quarter of a cell below, none does. Patches that are not named after parts are not asked.
+// The box with its top, and the border between the two parts at a height; neither has a side there.
+Surface boxOfTwo(double border) {
+    Surface s;
+    s.parts = {{"body", "", 10}, {"top", "", 10}};
+    for (int part = 0; part < 2; ++part) {
+        const Surface piece = box(part ? 1 - border : border);
+        const double open = part ? 0 : border; // height of the side that is left out
+        const auto first = static_cast<std::uint32_t>(s.points.size());
+        for (const Vec3& p : piece.points) s.points.push_back({p.x, p.y, p.z + (part ? border : 0)});
+        for (const auto& v : piece.triangles) {
+            if (std::all_of(v.begin(), v.end(), [&](std::uint32_t i) { return piece.points[i].z == open; })) continue;
+            s.triangles.push_back({first + v[0], first + v[1], first + v[2]});
+            s.partOf.push_back(part);
+        }
+    }
+    return s;
+}
+
+// The top is a part of its own: samples every h/4 along the 4 edges around it, not within h of the corners. Each
+// is sampled twice, since both parts have edges there. With the geometry's border a quarter of a cell below none is captured.
 TEST(FitMeasure, bordersBetweenParts) {
     PolyMesh mesh = cubeWall([](Vec3 p) { return p; });
-    mesh.patches[1].type = "wall";
-    const auto measure = [&](double border) {
-        Surface s = box(border);
-        s.parts = {{"body", "", 12}, {"top", "", 12}};
-        const Surface above = box(1 - border);
-        const auto first = static_cast<std::uint32_t>(s.points.size());
-        for (const Vec3& p : above.points) s.points.push_back({p.x, p.y, p.z + border});
-        for (std::size_t t = 0; t < above.triangles.size(); ++t) {
-            const auto& v = above.triangles[t];
-            const bool between = above.points[v[0]].z + above.points[v[1]].z + above.points[v[2]].z == 0;
-            if (between) continue; // the side that both boxes share
-            s.triangles.push_back({first + v[0], first + v[1], first + v[2]});
-            s.partOf.push_back(1);
-        }
-        return fit(mesh, s);
-    };
-    const FitReport on = measure(1 - 1e-6), off = measure(1 - 0.25 * h);
-    EXPECT_EQ(on.borderSamples, 4 * 4 * n);
+    const FitReport on = fit(mesh, boxOfTwo(1 - 1e-6)), off = fit(mesh, boxOfTwo(1 - 0.25 * h));
+    EXPECT_NEAR(double(on.borderSamples), 2 * 4 * (4 * n - 8), 16);
     EXPECT_DOUBLE_EQ(on.partBorderFraction, 1);
+    EXPECT_NEAR(double(off.borderSamples), 2 * 4 * (4 * n - 8), 16);
     EXPECT_DOUBLE_EQ(off.partBorderFraction, 0);
     EXPECT_EQ(fit(mesh, box(1)).borderSamples, 0);
+}
+
+// A foot that stands on the top: the border is its outline, which only the foot has edges along. A sheet that passes through
+// two sides: the border is where it cuts them. Neither is on the wall's edges.
+TEST(FitMeasure, bordersOfWhatStandsOnOrPassesThrough) {
+    const PolyMesh mesh = cubeWall([](Vec3 p) { return p; });
+    const auto with = [&](const std::vector<Vec3>& corners, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+        Surface s = box(1);
+        s.parts = {{"body", "", 12}, {"top", "", triangles.size()}};
+        const auto first = static_cast<std::uint32_t>(s.points.size());
+        s.points.insert(s.points.end(), corners.begin(), corners.end());
+        for (const auto& t : triangles) {
+            s.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+            s.partOf.push_back(1);
+        }
+        return fit(mesh, s).borderSamples;
+    };
+    // A fin, 0.5 long; the flow is inside the box, so it hangs from the top.
+    EXPECT_NEAR(double(with({{0.25, 0.52, 1}, {0.75, 0.52, 1}, {0.75, 0.52, 0.6}, {0.25, 0.52, 0.6}}, {{0, 1, 2}, {0, 2, 3}})), 4 * 0.5 * n, 2);
+    // A triangle through the top, 0.5 long there.
+    EXPECT_NEAR(double(with({{0.25, 0.52, 1.2}, {0.75, 0.52, 1.2}, {0.75, 0.52, 0.6}, {0.25, 0.52, 0.6}}, {{0, 1, 2}, {0, 2, 3}})), 4 * 0.5 * n, 2);
 }
 
 // A line of many short edges is sampled like one long edge: by length, not by edge.

@@ -63,7 +63,7 @@ TEST(ReportWrite, HasTheContractsKeys) {
     EXPECT_THAT(keys(json["fit"]), testing::ElementsAre("wall_nodes_on_geometry_fraction",
                                                         "mean_distance_in_h", "max_distance_in_h",
                                                         "feature_capture_fraction", "tilted_face_fraction",
-                                                        "tilted_45_face_fraction", "part_border_fraction", "part_border_samples",
+                                                        "tilted_45_face_fraction",
                                                         "cut_short", "off_geometry"));
     const Json& off = json["fit"]["off_geometry"];
     EXPECT_THAT(keys(off), testing::ElementsAre("nodes", "fraction", "causes", "places_total", "places", "tilted_nodes",

@@ -474,11 +474,16 @@ bool SurfaceIndex::overlaps(const Box& box) const {
     return impl_->walkBox(box, [&](const TreeTriangle& t) { return triangleMeetsBox(t.a, t.b, t.c, box); });
 }
 
+bool SurfaceIndex::any(const Box& box, const std::function<bool(std::uint32_t)>& accept) const {
+    return impl_->walkBox(box, [&](const TreeTriangle& t) {
+        return box.overlaps({cwiseMin(t.a, cwiseMin(t.b, t.c)), cwiseMax(t.a, cwiseMax(t.b, t.c))}) && accept(t.id);
+    });
+}
+
 std::vector<std::uint32_t> SurfaceIndex::candidates(const Box& box) const {
     std::vector<std::uint32_t> found;
-    impl_->walkBox(box, [&](const TreeTriangle& t) {
-        if (box.overlaps({cwiseMin(t.a, cwiseMin(t.b, t.c)), cwiseMax(t.a, cwiseMax(t.b, t.c))}))
-            found.push_back(t.id);
+    any(box, [&](std::uint32_t t) {
+        found.push_back(t);
         return false;
     });
     std::sort(found.begin(), found.end());

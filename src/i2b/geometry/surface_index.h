@@ -52,6 +52,9 @@ class SurfaceIndex {
     bool overlaps(const Box& box) const;
     // All triangles whose bounding boxes meet the box, ascending.
     std::vector<std::uint32_t> candidates(const Box& box) const;
+    // Asks accept() of the triangles whose bounding boxes meet the box, in no order that means anything, until it takes
+    // one; whether it did.
+    bool any(const Box& box, const std::function<bool(std::uint32_t)>& accept) const;
     Vec3 normal(std::uint32_t triangle) const; // unit, or zero where the triangle has no area
 
   private:

@@ -53,12 +53,12 @@ std::string fitText(const FitReport& fit) {
                        "    wall face centres: {:.4f} h off on average; farthest wall node {:.4f} h, at "
                        "({:.6g} {:.6g} {:.6g})\n"
                        "    sharp edges captured: {:.2f} % of {} samples\n"
-                       "    faces tilted over 25 degrees: {:.2f} %, over 45: {:.2f} %\n"
-                       "    borders between parts along mesh edges: {:.2f} % of {} samples\n",
+                       "    faces tilted over 25 degrees: {:.2f} %, over 45: {:.2f} %\n",
                        100 * fit.wallNodesOnGeometryFraction, fit.wallNodes, fit.meanDistanceInH,
                        fit.maxDistanceInH, fit.farthest.x, fit.farthest.y, fit.farthest.z,
                        100 * fit.featureCaptureFraction, fit.featureSamples, 100 * fit.tiltedFaceFraction,
-                       100 * fit.tilted45FaceFraction, 100 * fit.partBorderFraction, fit.borderSamples);
+                       100 * fit.tilted45FaceFraction) +
+           (fit.borderSamples == 0 ? "" : fmt::format("    borders between parts captured: {:.2f} % of {} samples\n", 100 * fit.partBorderFraction, fit.borderSamples));
 }
 
 std::string regionRecord(const Region& region, const std::vector<ReportPart>& parts) {

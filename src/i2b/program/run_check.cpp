@@ -25,7 +25,8 @@ FitReport fitTo(const PolyMesh& mesh, const GeometryOptions& geometry, const std
     Stage stage(run.context, "fit");
     const SurfaceIndex index(surface);
     const FeatureGraph features = buildFeatureGraph(surface, {geometry.featureAngle, 0});
-    const FitReport fit = measureFit(mesh, index, features, patches);
+    FitReport fit = measureFit(mesh, index, features, patches);
+    measurePartBorders(mesh, index, patches, fit);
     stage.items = static_cast<std::uint64_t>(fit.wallFaces);
     return fit;
 }

@@ -11,6 +11,9 @@
 // straight line as far as h from the sample. The share that has a wall edge, folded by more than 25 degrees,
 // within 0.1 h.
 //
+// Borders: the same along the lines where two parts meet (border_lines.h), of samples that are seen from the flow 0.3 h
+// over the nearest wall; the share that has an edge between the patches of these two parts within 0.1 h.
+//
 // Tilted: of the wall faces whose centre is more than h from every edge of 40 degrees and more, the share
 // whose normal is over 25 (45) degrees off that of the geometry closest to the centre, orientation ignored.
 #pragma once
@@ -31,8 +34,8 @@ struct FitReport {
     std::int64_t featureSamples = 0;
     double tiltedFaceFraction = 0; // normal over 25 degrees off, more than h from sharp edges
     double tilted45FaceFraction = 0;
-    double partBorderFraction = 1;   // of samples on edges between patches of two parts: the nearest part changes so within 0.1 h
-    std::int64_t borderSamples = 0;  // 0: the patches are not named after parts, or nothing borders on anything
+    double partBorderFraction = 1;   // of resolvable samples every h/4 along the lines where two parts meet
+    std::int64_t borderSamples = 0;  // 0: not asked for, the patches are not named after parts, or nothing borders on anything
     Vec3 farthest; // m, the wall node of maxDistanceInH
 };
 
@@ -51,8 +54,8 @@ struct WallNodes {
 FitReport measureFit(const PolyMesh& mesh, const SurfaceIndex& index, const FeatureGraph& features,
                      const std::vector<std::string>& patches = {}, WallNodes* nodes = nullptr);
 
-// The last two figures. Four samples an edge; at 0.1 h to either side of it the nearest part must be that of the patch
-// there, h being the mean of the edge's own and its faces' sizes (square roots of areas).
-void measurePartBorders(const PolyMesh& mesh, const SurfaceIndex& index, FitReport& report);
+// The borders, which measureFit() leaves out: they take longer than all the rest. Patches are told by the names of the
+// geometry's parts.
+void measurePartBorders(const PolyMesh& mesh, const SurfaceIndex& index, const std::vector<std::string>& patches, FitReport& report);
 
 } // namespace i2b

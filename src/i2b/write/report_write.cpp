@@ -32,9 +32,7 @@ Json fitJson(const FitReport& f) {
             {"max_distance_in_h", number(f.maxDistanceInH)},
             {"feature_capture_fraction", number(f.featureCaptureFraction)},
             {"tilted_face_fraction", number(f.tiltedFaceFraction)},
-            {"tilted_45_face_fraction", number(f.tilted45FaceFraction)},
-            {"part_border_fraction", number(f.partBorderFraction)},
-            {"part_border_samples", f.borderSamples}};
+            {"tilted_45_face_fraction", number(f.tilted45FaceFraction)}};
 }
 
 Json layerRowJson(const LayerRow& row) {

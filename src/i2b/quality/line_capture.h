@@ -1,0 +1,32 @@
+// How much of a set of lines of the geometry the wall has: samples are taken every h/4 along them, where the wall comes
+// within h/2 and where the line is resolvable (fit_report.h); whoever asks says what it takes to have captured one.
+#pragma once
+#include "i2b/quality/fit_wall.h"
+#include <functional>
+
+namespace i2b {
+
+// The wall nearest to a sample.
+struct WallPlace {
+    std::int32_t face = -1; // place in Wall::faces
+    double h = 0;           // m, the face's size
+    double distance = 0;    // m
+    Vec3 point;             // m
+};
+
+struct LineSamples {
+    std::int64_t samples = 0, captured = 0;
+};
+
+// Asked of a sample, m, and the triangle without area of its line; on any thread.
+using LineAsk = std::function<bool(const Vec3& sample, std::uint32_t line, const WallPlace& at)>;
+
+// lines: segments as triangles without area, and an index of them; none give no samples. counts: asked last of all that
+// decides whether a sample is one; isCaptured: of these. The same on any number of threads.
+LineSamples captureLines(const PolyMesh& mesh, const Wall& wall, const Surface& lines, const SurfaceIndex& lineIndex, const LineAsk& counts,
+                         const LineAsk& isCaptured);
+
+// Appends a segment as a triangle without area, which a SurfaceIndex takes like any other.
+void addSegment(Surface& s, const Vec3& a, const Vec3& b);
+
+} // namespace i2b
