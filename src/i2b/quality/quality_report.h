@@ -26,6 +26,34 @@ struct QualityLimits {
     double edgeAlignment = 1e-6;
 };
 
+// OpenFOAM's mesh quality dictionary, with the figures of its etc/caseDicts/mesh/generation/meshQualityDict.cfg.
+struct DictionaryLimits {
+    double nonOrthogonality = 65;    // degrees, at most; 180: not asked
+    double pyramidVolume = 1e-13;    // m^3, of a face with a cell's centre, at least; -1e15 and less: not asked
+    double tetQuality = 1e-15;       // of the tetrahedra of faces with cells, 1: regular; -1e15 and less: not asked
+    double concavity = 80;           // degrees, of a face's angles, at most; 180: not asked
+    double faceArea = -1;            // m^2, at least; below 0: not asked
+    double internalSkewness = 4;     // at most; this and the next not over 0: not asked
+    double boundarySkewness = 20;
+    double faceWeight = 0.05;        // at least; below 0, or 1 and more: not asked
+    double volumeRatio = 0.01;       // at least; below 0: not asked
+    double twist = 0.02;             // cosine, triangles of a face to the line between the cells, at least; -1: not asked
+    double triangleTwist = -1;       // cosine, triangles of a face to the next, at least; -1: not asked
+    double flatness = -1;            // sum of the areas of a face's triangles over its own, at least; below 0: not asked
+    double determinant = 0.001;      // of cells, by all faces (1: a cube), at least; -1: not asked
+};
+
+// What is beyond a limit of the dictionary.
+struct DictionaryCheck {
+    std::string key;                 // in the dictionary, e.g. "maxNonOrtho"
+    double limit = 0;
+    bool asked = true;
+    std::int64_t faces = 0;          // beyond it, or of cells beyond it
+    std::int64_t newFaces = 0;       // of these, the ones that are within all limits listed before: what checkMesh prints
+    std::int64_t cells = 0;          // beyond a limit of cells
+    Vec3 worst;                      // m, where any are
+};
+
 // One named check: how many faces, cells or points fail it, and the worst place.
 struct QualityCheck {
     std::string name;                // as checkMesh names the set it writes, e.g. "nonOrthoFaces"
@@ -104,7 +132,11 @@ struct QualityReport {
     double minEdgeLength = 0, maxEdgeLength = 0, nearDistance = 0; // m
     std::int64_t shortEdgePoints = 0, concaveFaces = 0, warpedFaces = 0, flatnessFaces = 0;
     double maxConcaveAngle = 0;               // degrees
+    std::vector<DictionaryCheck> dictionary;  // in the order of checkMesh -meshQuality
+    std::int64_t dictionaryFaces = 0;         // beyond any of its limits
+    double minFullness = 0;                   // least determinant by all faces, the dictionary's
     QualityLimits limits;                     // those it was measured with
+    DictionaryLimits dictionaryLimits;
     std::vector<QualityCheck> checks;         // in checkMesh's order, those with a count only
     int failedChecks = 0;                     // checkMesh's "Failed n mesh checks."
     bool ok() const { return failedChecks == 0; }
@@ -113,7 +145,7 @@ struct QualityReport {
 // Definitions and tolerances are those of OpenFOAM v1912, and sums run in the order of the mesh, so that figures agree
 // with checkMesh's to the last digit printed. Coupled patches (cyclic, processor) are taken as plain boundary. Needs valid indices (what
 // PolyMesh::validate() says about ranges); anything else may be wrong with the mesh. Deterministic on any number of threads.
-QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits = {});
+QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits = {}, const DictionaryLimits& dictionary = {});
 
 // The report as text: what the mesh is made of, its patches, zones and regions, then a table of all checks (worst
 // and mean value, limit, how many are beyond it, verdict, place of the worst) in three groups, and in the last line
