@@ -79,6 +79,48 @@ void checkEdges(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::
     if (use.once || use.over) part.zipUp.hit(cell);
 }
 
+// Six quadrilaterals that are plainly a hexahedron: the other five join the first one's four vertices to four others, one
+// each, so that all three faces at a vertex are those of a cube. Then each edge has two faces, and no list of edges is needed.
+bool isPlainHex(const PolyMesh& mesh, std::span<const std::int32_t> faces) {
+    const std::int32_t* v[6];
+    for (Index i = 0; i < 6; ++i) v[i] = mesh.faceVertices.data() + mesh.faceOffsets[Index(faces[i])];
+    const std::int32_t* const base = v[0];
+    const auto corner = [&](std::int32_t p) { return p == base[0] ? 0 : p == base[1] ? 1 : p == base[2] ? 2 : p == base[3] ? 3 : -1; };
+    if (base[0] == base[1] || base[0] == base[2] || base[0] == base[3] || base[1] == base[2] || base[1] == base[3] || base[2] == base[3])
+        return false;
+    std::int32_t above[4] = {-1, -1, -1, -1}; // the vertex that is joined to each of the first face
+    unsigned sides = 0;                       // edges of the first face that have a side
+    const std::int32_t* lid = nullptr;
+    for (Index i = 1; i < 6; ++i) {
+        int at[4];
+        for (Index k = 0; k < 4; ++k) at[k] = corner(v[i][k]);
+        Index first = 0; // of the two that are of the first face and follow each other
+        while (first < 4 && !(at[first] >= 0 && at[(first + 1) % 4] >= 0)) ++first;
+        if (first == 4) {
+            if (lid != nullptr || at[0] + at[1] + at[2] + at[3] != -4) return false;
+            lid = v[i];
+            continue;
+        }
+        const Index second = (first + 1) % 4, third = (first + 2) % 4, fourth = (first + 3) % 4;
+        if (at[third] >= 0 || at[fourth] >= 0) return false;
+        const int a = at[first], b = at[second];
+        const bool along = b == (a + 1) % 4;
+        if (!along && a != (b + 1) % 4) return false;
+        sides |= 1U << unsigned(along ? a : b);
+        for (const auto& [below, p] : {std::pair(b, v[i][third]), std::pair(a, v[i][fourth])}) {
+            if (above[below] >= 0 && above[below] != p) return false;
+            above[below] = p;
+        }
+    }
+    if (sides != 15U || lid == nullptr || above[0] == above[2] || above[1] == above[3]) return false;
+    // The lid runs through the four above in their order, one way or the other, from wherever it starts.
+    const Index start = lid[0] == above[0] ? 0 : lid[0] == above[1] ? 1 : lid[0] == above[2] ? 2 : 3;
+    if (lid[0] != above[start] || lid[2] != above[(start + 2) % 4]) return false;
+    const std::int32_t next = above[(start + 1) % 4], last = above[(start + 3) % 4];
+    return above[start] != next && above[start] != last && above[(start + 2) % 4] != next && above[(start + 2) % 4] != last &&
+           ((lid[1] == next && lid[3] == last) || (lid[1] == last && lid[3] == next));
+}
+
 bool disjoint(std::span<const std::int32_t> a, std::span<const std::int32_t> b) {
     for (const std::int32_t v : a)
         if (std::find(b.begin(), b.end(), v) != b.end()) return false;
@@ -309,7 +351,7 @@ class CellStretch {
 
     void measureAddressing(std::int32_t cell, std::span<const std::int32_t> faces, bool hex, CellPart& part) {
         if (faces.size() <= 3) part.illegal.hit(cell);
-        checkEdges(m_.mesh, faces, cell, edges_, part);
+        if (!hex || !isPlainHex(m_.mesh, faces)) checkEdges(m_.mesh, faces, cell, edges_, part);
         if (hex)
             ++part.shapes.hexahedra;
         else

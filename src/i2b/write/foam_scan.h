@@ -27,6 +27,7 @@ class FoamScanner {
 
     std::vector<std::int32_t> labels();               // N(...) or N{value}
     void appendLabels(std::vector<std::int32_t>& to); // the same, at the end of a list
+    std::vector<std::uint32_t> offsets();             // labels, none below 0
     std::vector<Vec3> points();
 
     [[noreturn]] void fail(const std::string& what) const;
@@ -39,6 +40,8 @@ class FoamScanner {
     std::int32_t checkedLabel(std::int64_t value) const;
     std::string_view raw(std::size_t count, std::size_t size); // the bytes between ( and )
     std::size_t count(std::size_t leastBytesEach);
+    template <class Label>
+    void appendTo(std::vector<Label>& to);
 
     const MappedFile& file_;
     std::string_view text_;
