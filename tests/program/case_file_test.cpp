@@ -159,7 +159,7 @@ TEST(CaseFile, LimitsOfQuality) {
     EXPECT_EQ(table.options.quality.tetQuality, -1e30);
     EXPECT_EQ(table.options.quality.internalSkewness, 4);
     expectSame(parseCase("max-non-orthogonality = 70\nmin-tet-quality = -1e30\n", "").options, table.options);
-    EXPECT_THAT(complaint("[quality]\nmax-non-ortho = 70"), AllOf(HasSubstr("car.toml:2"), HasSubstr("max-non-orthogonality")));
+    EXPECT_THAT(complaint("[quality]\nmax-non-orthogonalty = 70"), AllOf(HasSubstr("car.toml:2"), HasSubstr("max-non-orthogonality")));
 }
 
 // The short forms of lists of one.

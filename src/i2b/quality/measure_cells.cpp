@@ -1,194 +1,14 @@
-#include "i2b/quality/cell_edges.h"
+#include "i2b/quality/cell_addressing.h"
 #include "i2b/quality/dictionary_measure.h"
 #include "i2b/quality/glance_hexes.h"
 #include "i2b/quality/measure_steps.h"
 #include "i2b/quality/measures.h"
-#include <map>
 
 namespace i2b {
 namespace {
 
 using Index = std::size_t;
 constexpr double tinyLength = 1e-300, beyondAll = 1e300;
-
-struct CellPart {
-    Tally illegal, zipUp, multiFaces, oneInternal, twoInternal, open, aspect, zeroVolume, determinant,
-        concave;
-    std::int64_t openByEdges = 0, unordered = 0, multiplyConnected = 0;
-    Extremes openness, aspectRatio, volume, determinants, fullness;
-    Tally hollow;
-    std::vector<std::int32_t> hollowFaces;
-    MeshStatistics shapes;
-    std::map<std::int64_t, std::int64_t> polyhedra;
-    std::vector<std::int32_t> unorderedFaces;
-
-    void join(const CellPart& o) {
-        illegal.join(o.illegal), zipUp.join(o.zipUp), oneInternal.join(o.oneInternal),
-            twoInternal.join(o.twoInternal);
-        open.join(o.open), aspect.join(o.aspect), zeroVolume.join(o.zeroVolume),
-            determinant.join(o.determinant);
-        concave.join(o.concave);
-        openByEdges += o.openByEdges, unordered += o.unordered, multiplyConnected += o.multiplyConnected;
-        openness.join(o.openness), aspectRatio.join(o.aspectRatio), volume.join(o.volume);
-        determinants.join(o.determinants), fullness.join(o.fullness), hollow.join(o.hollow);
-        hollowFaces.insert(hollowFaces.end(), o.hollowFaces.begin(), o.hollowFaces.end());
-        shapes.hexahedra += o.shapes.hexahedra, shapes.prisms += o.shapes.prisms,
-            shapes.wedges += o.shapes.wedges;
-        shapes.pyramids += o.shapes.pyramids, shapes.tetWedges += o.shapes.tetWedges;
-        shapes.tetrahedra += o.shapes.tetrahedra, shapes.polyhedra += o.shapes.polyhedra;
-        for (const auto& [n, count] : o.polyhedra) polyhedra[n] += count;
-        unorderedFaces.insert(unorderedFaces.end(), o.unorderedFaces.begin(), o.unorderedFaces.end());
-    }
-};
-
-// Edge use by sorting, for cells with too many vertices for CellEdges.
-struct EdgeUse {
-    bool once = false, over = false;
-};
-EdgeUse sortedEdgeUse(const PolyMesh& mesh, std::span<const std::int32_t> faces) {
-    std::vector<std::uint64_t> edges;
-    for (const std::int32_t f : faces) {
-        const std::span<const std::int32_t> v = mesh.face(f);
-        for (Index i = 0; i < v.size(); ++i) {
-            const std::int32_t a = v[i], b = v[i + 1 == v.size() ? 0 : i + 1];
-            edges.push_back(std::uint64_t(std::uint32_t(std::min(a, b))) << 32 |
-                            std::uint32_t(std::max(a, b)));
-        }
-    }
-    std::sort(edges.begin(), edges.end());
-    EdgeUse use;
-    for (Index i = 0, j = 0; i < edges.size(); i = j) {
-        while (j < edges.size() && edges[j] == edges[i]) ++j;
-        use.once |= j - i == 1;
-        use.over |= j - i > 2;
-    }
-    return use;
-}
-
-void checkEdges(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::int32_t cell,
-                CellEdges& edges, CellPart& part) {
-    edges.clear();
-    bool fits = true;
-    for (const std::int32_t f : faces)
-        if (!edges.addFace(mesh.face(f))) {
-            fits = false;
-            break;
-        }
-    const EdgeUse use = fits ? EdgeUse{edges.anyEdgeOnce(), edges.anyEdgeOver()} : sortedEdgeUse(mesh, faces);
-    if (use.once) ++part.openByEdges;
-    if (use.once || use.over) part.zipUp.hit(cell);
-}
-
-// Six quadrilaterals that are plainly a hexahedron: the other five join the first one's four vertices to four others, one
-// each, so that all three faces at a vertex are those of a cube. Then each edge has two faces, and no list of edges is needed.
-bool isPlainHex(const PolyMesh& mesh, std::span<const std::int32_t> faces) {
-    const std::int32_t* v[6];
-    for (Index i = 0; i < 6; ++i) v[i] = mesh.faceVertices.data() + mesh.faceOffsets[Index(faces[i])];
-    const std::int32_t* const base = v[0];
-    const auto corner = [&](std::int32_t p) { return p == base[0] ? 0 : p == base[1] ? 1 : p == base[2] ? 2 : p == base[3] ? 3 : -1; };
-    if (base[0] == base[1] || base[0] == base[2] || base[0] == base[3] || base[1] == base[2] || base[1] == base[3] || base[2] == base[3])
-        return false;
-    std::int32_t above[4] = {-1, -1, -1, -1}; // the vertex that is joined to each of the first face
-    unsigned sides = 0;                       // edges of the first face that have a side
-    const std::int32_t* lid = nullptr;
-    for (Index i = 1; i < 6; ++i) {
-        int at[4];
-        for (Index k = 0; k < 4; ++k) at[k] = corner(v[i][k]);
-        Index first = 0; // of the two that are of the first face and follow each other
-        while (first < 4 && !(at[first] >= 0 && at[(first + 1) % 4] >= 0)) ++first;
-        if (first == 4) {
-            if (lid != nullptr || at[0] + at[1] + at[2] + at[3] != -4) return false;
-            lid = v[i];
-            continue;
-        }
-        const Index second = (first + 1) % 4, third = (first + 2) % 4, fourth = (first + 3) % 4;
-        if (at[third] >= 0 || at[fourth] >= 0) return false;
-        const int a = at[first], b = at[second];
-        const bool along = b == (a + 1) % 4;
-        if (!along && a != (b + 1) % 4) return false;
-        sides |= 1U << unsigned(along ? a : b);
-        for (const auto& [below, p] : {std::pair(b, v[i][third]), std::pair(a, v[i][fourth])}) {
-            if (above[below] >= 0 && above[below] != p) return false;
-            above[below] = p;
-        }
-    }
-    if (sides != 15U || lid == nullptr || above[0] == above[2] || above[1] == above[3]) return false;
-    // The lid runs through the four above in their order, one way or the other, from wherever it starts.
-    const Index start = lid[0] == above[0] ? 0 : lid[0] == above[1] ? 1 : lid[0] == above[2] ? 2 : 3;
-    if (lid[0] != above[start] || lid[2] != above[(start + 2) % 4]) return false;
-    const std::int32_t next = above[(start + 1) % 4], last = above[(start + 3) % 4];
-    return above[start] != next && above[start] != last && above[(start + 2) % 4] != next && above[(start + 2) % 4] != last &&
-           ((lid[1] == next && lid[3] == last) || (lid[1] == last && lid[3] == next));
-}
-
-bool disjoint(std::span<const std::int32_t> a, std::span<const std::int32_t> b) {
-    for (const std::int32_t v : a)
-        if (std::find(b.begin(), b.end(), v) != b.end()) return false;
-    return true;
-}
-
-// By the number of triangles and quads alone where that settles it; vertices: of the cell.
-void countShape(const PolyMesh& mesh, std::span<const std::int32_t> faces, int vertices, CellPart& part) {
-    int triangles = 0, quads = 0;
-    std::span<const std::int32_t> triangle[2];
-    for (const std::int32_t f : faces) {
-        const std::span<const std::int32_t> v = mesh.face(f);
-        if (v.size() == 3)
-            triangle[triangles++ % 2] = v;
-        else if (v.size() == 4)
-            ++quads;
-    }
-    MeshStatistics& s = part.shapes;
-    const bool simple = Index(triangles + quads) == faces.size();
-    if (simple && triangles == 0 && quads == 6)
-        ++s.hexahedra;
-    else if (simple && triangles == 4 && quads == 0)
-        ++s.tetrahedra;
-    else if (simple && triangles == 4 && quads == 1)
-        ++s.pyramids;
-    else if (simple && triangles == 2 && quads == 3 && vertices == 6 && disjoint(triangle[0], triangle[1]))
-        ++s.prisms;
-    else if (simple && triangles == 2 && quads == 4 && vertices == 7)
-        ++s.wedges;
-    else if (simple && triangles == 2 && quads == 2)
-        ++s.tetWedges;
-    else
-        ++s.polyhedra, ++part.polyhedra[static_cast<std::int64_t>(faces.size())];
-}
-
-// Internal faces of a cell should lead to its higher neighbours in their order.
-void checkOrder(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::int32_t cell, CellPart& part,
-                std::vector<std::pair<std::int32_t, std::int32_t>>& scratch) {
-    const std::int32_t internal = mesh.internalFaces();
-    std::int32_t lastCell = -1, lastFace = -1;
-    bool ordered = true;
-    scratch.clear();
-    for (const std::int32_t f : faces) {
-        if (f >= internal) continue;
-        const std::int32_t owner = mesh.owner[Index(f)], neighbour = mesh.neighbour[Index(f)];
-        const std::int32_t other = neighbour == cell ? owner : neighbour;
-        if (other <= cell) continue;
-        ordered = ordered && other > lastCell && f > lastFace;
-        lastCell = other, lastFace = f;
-        scratch.emplace_back(other, f);
-    }
-    if (ordered) return;
-    std::stable_sort(scratch.begin(), scratch.end(), [](auto& a, auto& b) { return a.first < b.first; });
-    bool multiple = false;
-    for (Index i = 1; i < scratch.size(); ++i) {
-        const auto& [before, beforeFace] = scratch[i - 1];
-        const auto& [here, face] = scratch[i];
-        if (here == before) {
-            multiple = true;
-            part.unorderedFaces.push_back(beforeFace);
-            part.unorderedFaces.push_back(face);
-        } else if (face < beforeFace) {
-            ++part.unordered;
-            part.unorderedFaces.push_back(face);
-        }
-    }
-    if (multiple) ++part.multiplyConnected;
-}
 
 // A sixth of the surface (m^2, summed along the axes) over the volume to the power of two thirds, or aspect where that is
 // more. The power is costly, and of no account where it clearly leaves the ratio below what is known to be reached.
@@ -251,12 +71,6 @@ bool isConcave(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::s
     return false;
 }
 
-int internalFaces(const PolyMesh& mesh, std::span<const std::int32_t> faces) {
-    int n = 0;
-    for (const std::int32_t f : faces) n += f < mesh.internalFaces() ? 1 : 0;
-    return n;
-}
-
 void storeOrder(Measurement& m, CellPart& total) {
     const PolyMesh& mesh = m.mesh;
     std::int64_t reversed = 0;
@@ -317,7 +131,7 @@ class CellStretch {
   public:
     // knownAspect: a ratio that cells before these reach
     CellStretch(Measurement& m, const Directions& directions, double dictionaryDeterminant, double knownAspect)
-        : m_(m), directions_(directions), fullness_(dictionaryDeterminant), knownAspect_(knownAspect), faceShapes_(m.mesh),
+        : m_(m), directions_(directions), fullness_(dictionaryDeterminant), knownAspect_(knownAspect), faceShapes_(m.mesh), addressing_(m.mesh),
           bounds_{m.limits.smallVolume, m.limits.closedness, m.limits.aspectRatio, m.limits.determinant, fullness_} {}
 
     // determinants: of the first cell
@@ -327,7 +141,7 @@ class CellStretch {
             const auto cell = static_cast<std::int32_t>(c);
             const std::span<const std::int32_t> faces = m_.cellFaces[cell];
             const bool hex = isHex(faces);
-            measureAddressing(cell, faces, hex, part);
+            addressing_.measure(cell, faces, hex, part);
             if (!hex || directions_.count != 3) {
                 closer_.push_back(cell);
                 continue;
@@ -347,21 +161,6 @@ class CellStretch {
         for (const std::int32_t f : faces)
             if (m_.mesh.faceOffsets[Index(f) + 1] - m_.mesh.faceOffsets[Index(f)] != 4) return false;
         return true;
-    }
-
-    void measureAddressing(std::int32_t cell, std::span<const std::int32_t> faces, bool hex, CellPart& part) {
-        if (faces.size() <= 3) part.illegal.hit(cell);
-        if (!hex || !isPlainHex(m_.mesh, faces)) checkEdges(m_.mesh, faces, cell, edges_, part);
-        if (hex)
-            ++part.shapes.hexahedra;
-        else
-            countShape(m_.mesh, faces, edges_.vertices(), part);
-        checkOrder(m_.mesh, faces, cell, part, scratch_);
-        const int internal = internalFaces(m_.mesh, faces);
-        if (internal <= 1)
-            part.oneInternal.hit(cell);
-        else if (internal == 2)
-            part.twoInternal.hit(cell);
     }
 
     void take(std::int32_t cell, std::span<const std::int32_t> faces) {
@@ -424,8 +223,7 @@ class CellStretch {
     const Directions& directions_;
     double fullness_, knownAspect_;
     CellFaceShapes faceShapes_;
-    CellEdges edges_;
-    std::vector<std::pair<std::int32_t, std::int32_t>> scratch_;
+    CellAddressing addressing_;
     HexBounds bounds_;
     HexBatch batch_;
     HexExtremes extremes_;

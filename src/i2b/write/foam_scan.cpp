@@ -113,6 +113,11 @@ std::string_view FoamScanner::peekSome() {
 }
 
 void FoamScanner::expect(std::string_view token) {
+    const std::size_t begin = pastSpace();
+    if (token.size() == 1 && begin < text_.size() && text_[begin] == token[0] && isPunctuation(token[0])) {
+        at_ = begin + 1;
+        return;
+    }
     const std::string_view found = peekSome();
     if (found != token) fail(fmt::format("'{}' expected, but found '{}'", token, found.substr(0, 20)));
     next();
@@ -136,7 +141,26 @@ void FoamScanner::readHeader() {
     expect("}");
 }
 
+// Lists of text are nearly all numbers between blanks and brackets: these are read in place. Everything else, comments and
+// faults among it, is left to the slow way.
+std::size_t FoamScanner::pastSpace() const {
+    std::size_t at = at_;
+    while (at < text_.size() && isSpace(text_[at])) ++at;
+    return at;
+}
+
+bool FoamScanner::endsAt(std::size_t at) const { return at < text_.size() && (isSpace(text_[at]) || isPunctuation(text_[at])); }
+
 std::int64_t FoamScanner::integer() {
+    constexpr std::size_t plainDigits = 12;
+    const std::size_t begin = pastSpace();
+    std::size_t at = begin;
+    std::int64_t plain = 0;
+    for (; at < text_.size() && text_[at] >= '0' && text_[at] <= '9' && at - begin < plainDigits; ++at) plain = plain * 10 + (text_[at] - '0');
+    if (at > begin && endsAt(at)) {
+        at_ = at;
+        return plain;
+    }
     const std::string_view token = peekSome();
     std::int64_t value = 0;
     const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
@@ -147,6 +171,13 @@ std::int64_t FoamScanner::integer() {
 }
 
 double FoamScanner::scalar() {
+    double plain = 0;
+    const char* const begin = text_.data() + pastSpace();
+    const auto [stop, fault] = std::from_chars(begin, text_.data() + text_.size(), plain);
+    if (fault == std::errc() && endsAt(static_cast<std::size_t>(stop - text_.data()))) {
+        at_ = static_cast<std::size_t>(stop - text_.data());
+        return plain;
+    }
     const std::string_view token = peekSome();
     double value = 0;
     const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);

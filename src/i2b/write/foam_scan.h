@@ -35,6 +35,8 @@ class FoamScanner {
   private:
     std::string_view peekSome(); // fails at the end of the file
     void skipSpace();
+    std::size_t pastSpace() const;      // where the next token begins, unless it is a comment
+    bool endsAt(std::size_t at) const;  // does a token end before there?
     void readHeader();
     double scalar();
     std::int32_t checkedLabel(std::int64_t value) const;
