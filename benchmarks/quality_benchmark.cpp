@@ -218,6 +218,8 @@ void optimise(benchmark::State& state) {
     const Rows cellFaces = buildCellFaces(run.mesh);
     const std::vector<Snap> wishes(run.fitted.snaps.size());
     const Threads threads(state);
+    QualityLimits limits;
+    limits.nonOrthogonality = 40, limits.skewness = 2; // a box is easy
     std::int64_t nodes = 0, moves = 0;
     FaultCount before, after;
     for (auto _ : state) {
@@ -227,7 +229,7 @@ void optimise(benchmark::State& state) {
         std::vector<Snap> snaps = run.fitted.snaps;
         nodes = disturb(mesh, front, run.layers, snaps, 0.3);
         state.ResumeTiming();
-        MeshFaults faults(mesh, cellFaces, {});
+        MeshFaults faults(mesh, cellFaces, limits);
         faults.poorCells(before);
         Optimiser optimiser(mesh, cellFaces, faults, front, run.layers, {*run.painted.index, run.features, snaps, wishes});
         moves += optimiser.mend(12) + optimiser.pullIn(3);
