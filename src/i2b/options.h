@@ -2,6 +2,7 @@
 // place (program/options.cpp, validate()) before any stage sees them.
 #pragma once
 #include "i2b/core/vec.h"
+#include "i2b/quality/dictionary_limits.h"
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -148,6 +149,7 @@ struct Options {
     DomainOptions domain;
     FitOptions fit;
     LayerOptions layers;
+    DictionaryLimits quality;            // what check and the report count faces against; the mesher heeds its own
     OutputOptions output;
     int threads = 0;                     // 0: all the machine has
 };

@@ -42,6 +42,7 @@ Case everything() {
     o.fit = {0.2, 7};
     o.layers = {3, 1e-4, 1.35, 0.01, LayerUnit::cell, 30, 40, 1.5e-5, 4.6, {{"wheel{1,2}", 2, 1e-3, 0, 1.25}, {"body", 0, 0, 0, 0}}};
     o.output = {"out/car", {"vtu"}, true};
+    o.quality = {60, 1e-14, -1e30, 70, 1e-9, 3, 10, 0.1, 0.02, 0.05, 0.01, 0, 0.002};
     o.threads = 3;
     c.quiet = true;
     return c;
@@ -98,6 +99,19 @@ void expectSame(const Options& a, const Options& b) {
     EXPECT_EQ(a.layers.viscosity, b.layers.viscosity);
     EXPECT_EQ(a.layers.length, b.layers.length);
     expectSameItems(a.layers.parts, b.layers.parts);
+    EXPECT_EQ(a.quality.nonOrthogonality, b.quality.nonOrthogonality);
+    EXPECT_EQ(a.quality.pyramidVolume, b.quality.pyramidVolume);
+    EXPECT_EQ(a.quality.tetQuality, b.quality.tetQuality);
+    EXPECT_EQ(a.quality.concavity, b.quality.concavity);
+    EXPECT_EQ(a.quality.faceArea, b.quality.faceArea);
+    EXPECT_EQ(a.quality.internalSkewness, b.quality.internalSkewness);
+    EXPECT_EQ(a.quality.boundarySkewness, b.quality.boundarySkewness);
+    EXPECT_EQ(a.quality.faceWeight, b.quality.faceWeight);
+    EXPECT_EQ(a.quality.volumeRatio, b.quality.volumeRatio);
+    EXPECT_EQ(a.quality.twist, b.quality.twist);
+    EXPECT_EQ(a.quality.triangleTwist, b.quality.triangleTwist);
+    EXPECT_EQ(a.quality.flatness, b.quality.flatness);
+    EXPECT_EQ(a.quality.determinant, b.quality.determinant);
     EXPECT_EQ(a.output.folder, b.output.folder);
     EXPECT_EQ(a.output.formats, b.output.formats);
     EXPECT_EQ(a.output.ascii, b.output.ascii);
@@ -136,6 +150,16 @@ TEST(CaseFile, WritesEveryKey) {
 TEST(CaseFile, GeometryIsRelativeToTheFile) {
     const Case c = parseCase("geometry = ['a.stl', '/data/b.stl']", "cases/car.toml");
     EXPECT_THAT(c.options.geometry.files, ::testing::ElementsAre("cases/a.stl", "/data/b.stl"));
+}
+
+// Limits of quality stand before the tables or in [quality], under the same names.
+TEST(CaseFile, LimitsOfQuality) {
+    const Case table = parseCase("[quality]\nmax-non-orthogonality = 70\nmin-tet-quality = -1e30\n", "car.toml");
+    EXPECT_EQ(table.options.quality.nonOrthogonality, 70);
+    EXPECT_EQ(table.options.quality.tetQuality, -1e30);
+    EXPECT_EQ(table.options.quality.internalSkewness, 4);
+    expectSame(parseCase("max-non-orthogonality = 70\nmin-tet-quality = -1e30\n", "").options, table.options);
+    EXPECT_THAT(complaint("[quality]\nmax-non-orthogonalty = 70"), AllOf(HasSubstr("car.toml:2"), HasSubstr("max-non-orthogonality")));
 }
 
 // The short forms of lists of one.

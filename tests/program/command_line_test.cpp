@@ -318,6 +318,16 @@ TEST(CommandLine, ReadsInspectCheckAndSample) {
     EXPECT_EQ(sample.sampleFile, "engine.stl");
 }
 
+// Limits come from a case file, of which nothing else counts, and the command line wins over it.
+TEST(CommandLine, LimitsOfCheck) {
+    const CaseOnDisk file("geometry = 'a.stl'\nsize = 1\n[quality]\nmin-twist = 0.05\nmin-determinant = 0.01\n");
+    const CommandLine line = parseCommandLine({"check", "case", "--case", file.path, "--min-determinant", "-1"});
+    EXPECT_EQ(line.given.options.quality.twist, 0.05);
+    EXPECT_EQ(line.given.options.quality.determinant, -1);
+    EXPECT_TRUE(line.given.options.geometry.files.empty());
+    EXPECT_EQ(line.given.options.size.surface, 0);
+}
+
 // --write-case prints the case of this very command line.
 TEST(CommandLine, WriteCaseKeepsTheCommandLine) {
     const CommandLine line =

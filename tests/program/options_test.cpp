@@ -1,5 +1,6 @@
 #include "i2b/core/error.h"
 #include "i2b/program/options.h"
+#include <cmath>
 #include <gmock/gmock.h>
 #include <limits>
 
@@ -109,6 +110,19 @@ TEST(Validate, NamesEachBrokenOption) {
         {"y-plus", [](Options& o) { setPlate(o), o.layers.first = 1e-3; }},
         {"y-plus", [](Options& o) { setPlate(o), o.layers.unit = LayerUnit::cell; }},
         {"y-plus", [](Options& o) { setPlate(o), o.layers.viscosity = 1; }},
+        {"max-non-orthogonality", [](Options& o) { o.quality.nonOrthogonality = 181; }},
+        {"max-concavity", [](Options& o) { o.quality.concavity = -1; }},
+        {"min-pyramid-volume", [](Options& o) { o.quality.pyramidVolume = std::nan(""); }},
+        {"min-tet-quality", [](Options& o) { o.quality.tetQuality = 2; }},
+        {"min-face-area", [](Options& o) { o.quality.faceArea = std::nan(""); }},
+        {"max-internal-skewness", [](Options& o) { o.quality.internalSkewness = std::nan(""); }},
+        {"max-boundary-skewness", [](Options& o) { o.quality.boundarySkewness = std::nan(""); }},
+        {"min-face-weight", [](Options& o) { o.quality.faceWeight = 2; }},
+        {"min-volume-ratio", [](Options& o) { o.quality.volumeRatio = 2; }},
+        {"min-twist", [](Options& o) { o.quality.twist = -2; }},
+        {"min-triangle-twist", [](Options& o) { o.quality.triangleTwist = 2; }},
+        {"min-flatness", [](Options& o) { o.quality.flatness = 2; }},
+        {"min-determinant", [](Options& o) { o.quality.determinant = std::nan(""); }},
         {"format", [](Options& o) { o.output.formats = {"vtk"}; }},
         {"out", [](Options& o) { o.output.folder.clear(); }},
         {"threads", [](Options& o) { o.threads = -1; }},

@@ -253,4 +253,35 @@ void compareWithCheckMesh(const std::string& output, const QualityReport& report
     setsAndVerdict(c, report);
 }
 
+void compareWithMeshQuality(const std::string& output, const QualityReport& report) {
+    const std::size_t begin = output.find("Checking faces in error");
+    ASSERT_NE(begin, std::string::npos) << output;
+    const std::string text = output.substr(begin);
+    const std::pair<const char*, const char*> lines[] = {{"maxNonOrtho", "non-orthogonality >"},
+                                                         {"minVol", "face pyramid volume <"},
+                                                         {"minTetQuality", "face-decomposition tet quality <"},
+                                                         {"maxConcave", "faces with concavity >"},
+                                                         {"minArea", "faces with area <"},
+                                                         {"maxInternalSkewness", "faces with skewness >"},
+                                                         {"minFaceWeight", "faces with interpolation weights"},
+                                                         {"minVolRatio", "faces with volume ratio of neighbour cells <"},
+                                                         {"minTwist", "faces with face twist <"},
+                                                         {"minTriangleTwist", "faces with triangle twist <"},
+                                                         {"minFaceFlatness", "faces with flatness <"},
+                                                         {"minDeterminant", "faces on cells with determinant <"}};
+    Rows ours, theirs;
+    for (const auto& [key, words] : lines) {
+        const auto check = std::find_if(report.dictionary.begin(), report.dictionary.end(), [&, k = key](const auto& c) { return c.key == k; });
+        ASSERT_NE(check, report.dictionary.end()) << key;
+        std::int64_t faces = check->newFaces;
+        if (check->key == "maxInternalSkewness") faces += std::next(check)->newFaces; // those of the boundary, in one line
+        if (check->asked) ours.push_back(fmt::format("{} {}", key, faces));
+        std::smatch match;
+        if (std::regex_search(text, match, std::regex(std::string(words) + "[^\n]*: (\\d+)\n")))
+            theirs.push_back(fmt::format("{} {}", key, match[1].str()));
+    }
+    EXPECT_THAT(ours, ElementsAreArray(theirs));
+    Comparison(text).sameCount("Writing # faces in error to set meshQualityFaces", report.dictionaryFaces);
+}
+
 } // namespace i2b::test

@@ -10,4 +10,8 @@ namespace i2b::test {
 // name to be zero.
 void compareWithCheckMesh(const std::string& output, const QualityReport& report);
 
+// Expects the number of faces that output (of checkMesh -meshQuality) names beside each limit to be the report's, and the
+// limits that it does not name not to be asked.
+void compareWithMeshQuality(const std::string& output, const QualityReport& report);
+
 } // namespace i2b::test

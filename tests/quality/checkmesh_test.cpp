@@ -136,6 +136,45 @@ class CheckMesh : public testing::Test {
         return report;
     }
 
+    // The same of the limits of the mesh quality dictionary. Returns how many faces are beyond any.
+    std::int64_t expectSameLimits(const DictionaryLimits& limits) const {
+        writeText(folder_ / "system/meshQualityDict",
+                  foamFile("dictionary", "meshQualityDict") +
+                      fmt::format("maxNonOrtho {}; minVol {}; minTetQuality {}; maxConcave {}; minArea {};\n"
+                                  "maxInternalSkewness {}; maxBoundarySkewness {}; minFaceWeight {}; minVolRatio {};\n"
+                                  "minTwist {}; minTriangleTwist {}; minFaceFlatness {}; minDeterminant {};\n",
+                                  limits.nonOrthogonality, limits.pyramidVolume, limits.tetQuality, limits.concavity,
+                                  limits.faceArea, limits.internalSkewness, limits.boundarySkewness, limits.faceWeight,
+                                  limits.volumeRatio, limits.twist, limits.triangleTwist, limits.flatness, limits.determinant));
+        run("checkMesh -meshQuality");
+        const QualityReport report = measureQuality(readFoam(folder_.string()), {}, limits);
+        compareWithMeshQuality(readText(folder_ / "log"), report);
+        return report.dictionaryFaces;
+    }
+
+    // With the usual limits; with strict ones, and with each of these alone, so that none hides behind another. Returns how
+    // many of the latter some face is beyond.
+    int expectSameLimits() const {
+        expectSameLimits(DictionaryLimits{});
+        const DictionaryLimits off{180, -1e30, -1e30, 180, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+        const DictionaryLimits strict{25, 4e-6, 0.3, 5, 5e-4, 0.4, 0.5, 0.45, 0.7, 0.97, 0.995, 0.9, 0.6};
+        expectSameLimits(strict);
+        int reached = 0;
+        for (double DictionaryLimits::*limit :
+             {&DictionaryLimits::nonOrthogonality, &DictionaryLimits::pyramidVolume, &DictionaryLimits::tetQuality,
+              &DictionaryLimits::concavity, &DictionaryLimits::faceArea, &DictionaryLimits::internalSkewness,
+              &DictionaryLimits::boundarySkewness, &DictionaryLimits::faceWeight, &DictionaryLimits::volumeRatio,
+              &DictionaryLimits::twist, &DictionaryLimits::triangleTwist, &DictionaryLimits::flatness,
+              &DictionaryLimits::determinant}) {
+            DictionaryLimits alone = off;
+            alone.*limit = strict.*limit;
+            if (limit == &DictionaryLimits::internalSkewness) alone.boundarySkewness = 1e9; // of the pair one asks for both
+            if (limit == &DictionaryLimits::boundarySkewness) alone.internalSkewness = 1e9;
+            reached += expectSameLimits(alone) > 0 ? 1 : 0;
+        }
+        return reached;
+    }
+
     // The ids in a set that checkMesh wrote.
     std::vector<std::int32_t> writtenSet(const char* name) const {
         const std::string text = readText(folder_ / "constant/polyMesh/sets" / name);
@@ -190,6 +229,7 @@ TEST_F(CheckMesh, GradedAndSheared) {
     const QualityReport r = expectSame();
     EXPECT_GT(r.maxNonOrthogonality, 10);
     expectSameSets(r);
+    EXPECT_GE(expectSameLimits(), 4);
 }
 
 // The same mesh in each way OpenFOAM writes it: binary, and compressed.
@@ -218,8 +258,10 @@ TEST_F(CheckMesh, Perturbed) {
         perturb(amplitude);
         const QualityReport r = expectSame();
         expectSameSets(r);
+        const int reached = expectSameLimits();
         if (amplitude > 0.1) {
             EXPECT_GE(r.failedChecks, 8);
+            EXPECT_EQ(reached, 12); // all but flatness, which no face can be below
         }
     }
 }
@@ -232,6 +274,7 @@ TEST_F(CheckMesh, ThinCells) {
     EXPECT_GT(r.highAspectRatioCells, 0);
     EXPECT_GT(r.shortEdgePoints, 0);
     expectSameSets(r);
+    EXPECT_GE(expectSameLimits(), 5);
 }
 
 // Two blocks that touch nowhere.
@@ -254,6 +297,7 @@ TEST_F(CheckMesh, FaultsByHand) {
         const QualityReport report = expectSame();
         EXPECT_NE(findCheck(report, set), nullptr);
         expectSameSets(report);
+        expectSameLimits(DictionaryLimits{});
     };
     hold(levelJump(), "concaveCells");
     hold(cubesAtCorner(), "multiRegionPoints");
@@ -329,6 +373,7 @@ TEST_F(CheckMesh, Wedge) {
     const QualityReport r = expectSame();
     EXPECT_EQ(r.statistics.prisms, 12);
     EXPECT_EQ(r.wedges.size(), 2U);
+    expectSameLimits();
 }
 
 // Polyhedra, hanging nodes, layers and zones as another mesher makes them: a sphere in a box.
@@ -376,6 +421,10 @@ meshQualityControls { maxNonOrtho 65; maxBoundarySkewness 20; maxInternalSkewnes
     EXPECT_GT(r.statistics.polyhedra, 0);
     EXPECT_EQ(r.zones.size(), 1U);
     expectSameSets(r);
+    EXPECT_GE(expectSameLimits(), 9);
+    perturb(0.01); // polyhedra and layers that are distorted
+    expectSameSets(expectSame());
+    EXPECT_GE(expectSameLimits(), 9);
 }
 
 } // namespace

@@ -28,6 +28,8 @@ RunReport sample() {
     r.cells = 10;
     r.quality.emplace();
     r.quality->maxSkewness = 1.25;
+    r.quality->dictionary = {{.key = "maxNonOrtho", .limit = 65}, {.key = "minDeterminant", .limit = 0.001, .faces = 6, .cells = 1}};
+    r.quality->dictionaryFaces = 6;
     r.fit.emplace();
     r.fitCutShort = true;
     r.offGeometry.emplace();
@@ -59,7 +61,9 @@ TEST(ReportWrite, HasTheContractsKeys) {
                 testing::ElementsAre("ok", "negative_volume_cells", "wrong_oriented_faces",
                                      "max_non_orthogonality", "mean_non_orthogonality", "max_skewness",
                                      "max_aspect_ratio", "min_face_weight", "min_volume_ratio",
-                                     "min_determinant", "concave_cells"));
+                                     "min_determinant", "concave_cells", "faces_beyond_limits", "limits"));
+    EXPECT_THAT(keys(json["quality"]["limits"]), testing::ElementsAre("maxNonOrtho", "minDeterminant"));
+    EXPECT_THAT(keys(json["quality"]["limits"]["minDeterminant"]), testing::ElementsAre("limit", "asked", "faces", "cells", "worst"));
     EXPECT_THAT(keys(json["fit"]), testing::ElementsAre("wall_nodes_on_geometry_fraction",
                                                         "mean_distance_in_h", "max_distance_in_h",
                                                         "feature_capture_fraction", "tilted_face_fraction",
@@ -93,6 +97,9 @@ TEST(ReportWrite, HasTheContractsKeys) {
     EXPECT_THAT(keys(json["patches"][0]), testing::ElementsAre("name", "type", "faces"));
     EXPECT_EQ(json["quality"]["ok"], true);
     EXPECT_EQ(json["quality"]["max_skewness"], 1.25);
+    EXPECT_EQ(json["quality"]["faces_beyond_limits"], 6);
+    EXPECT_EQ(json["quality"]["limits"]["maxNonOrtho"]["limit"], 65);
+    EXPECT_EQ(json["quality"]["limits"]["minDeterminant"]["faces"], 6);
     EXPECT_EQ(json["patches"][0]["faces"], 6);
     EXPECT_EQ(json["regions"][0]["parts"][0], "body");
     EXPECT_EQ(json["leaks"][0]["width"], 0.5);

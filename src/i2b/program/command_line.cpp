@@ -125,7 +125,11 @@ struct Parser {
             ->allow_extra_args(false)
             ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
             ->needs("--geometry");
-        addShared(check, {"scale", "feature-angle", "threads", "quiet"});
+        check.add_option("--case", line.limitsFile, "A case file, for the limits in its table [quality]")->type_name("CASE.toml");
+        addShared(check, {"scale", "feature-angle", "max-non-orthogonality", "min-pyramid-volume", "min-tet-quality",
+                          "max-concavity", "min-face-area", "max-internal-skewness", "max-boundary-skewness",
+                          "min-face-weight", "min-volume-ratio", "min-twist", "min-triangle-twist", "min-flatness",
+                          "min-determinant", "threads", "quiet"});
         CLI::App& sample =
             command("sample", "Write a built-in geometry; without a name, list them", Command::sample);
         sample.add_option("name", line.sample, "Its name");
@@ -155,6 +159,7 @@ struct Parser {
             line.given = readCaseFile(files.front());
         else
             line.given.options.geometry.files = files;
+        if (!line.limitsFile.empty()) line.given.options.quality = readCaseFile(line.limitsFile).options.quality;
         // A list given on the command line replaces the case file's.
         for (const auto& [key, edit] : edits) {
             if (line.given.lines.erase(key) > 0) clearList(*findSetting(key), line.given);

@@ -46,10 +46,11 @@ void requireValid(const std::string& fault, const char* what) {
 }
 
 // What the mesh has come to, by itself and beside the geometry.
-void judge(MeshResult& out, const FeatureGraph& features, const FitSummary& fitted, const RepairSummary& repaired, Context& context) {
+void judge(MeshResult& out, const FeatureGraph& features, const FitSummary& fitted, const RepairSummary& repaired, const DictionaryLimits& limits,
+           Context& context) {
     const SurfaceIndex& index = *out.cartesian->index;
     out.report.quality = stage(
-        context, "quality", [&] { return measureQuality(out.mesh); },
+        context, "quality", [&] { return measureQuality(out.mesh, {}, limits); },
         [](const QualityReport& q) { return q.cells; });
     out.report.fit = stage(
         context, "fit quality",
@@ -172,7 +173,7 @@ MeshResult generate(const Options& options, Context& context) {
     out.report.wallFaces = static_cast<std::int64_t>(front.ownerCell.size());
     front = {}, layers = {}; // from here on the mesh speaks for itself
     lattice.reset();
-    judge(out, features, fitted, repaired, context);
+    judge(out, features, fitted, repaired, options.quality, context);
     return out;
 }
 

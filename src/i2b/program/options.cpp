@@ -190,6 +190,24 @@ void checkLayers(const LayerOptions& layers, Checker& check) {
             check.add("part-layers", fmt::format("of '{}' {}", part.part, fault), remedy);
 }
 
+// Within OpenFOAM's own ranges; values that mean "not asked" lie at or beyond their ends.
+void checkQuality(const DictionaryLimits& quality, Checker& check) {
+    constexpr double any = 1e300;
+    check.within("max-non-orthogonality", quality.nonOrthogonality, 0, 180);
+    check.within("min-pyramid-volume", quality.pyramidVolume, -any, any);
+    check.within("min-tet-quality", quality.tetQuality, -any, 1);
+    check.within("max-concavity", quality.concavity, 0, 180);
+    check.within("min-face-area", quality.faceArea, -any, any);
+    check.within("max-internal-skewness", quality.internalSkewness, -any, any);
+    check.within("max-boundary-skewness", quality.boundarySkewness, -any, any);
+    check.within("min-face-weight", quality.faceWeight, -any, 1);
+    check.within("min-volume-ratio", quality.volumeRatio, -any, 1);
+    check.within("min-twist", quality.twist, -1, 1);
+    check.within("min-triangle-twist", quality.triangleTwist, -1, 1);
+    check.within("min-flatness", quality.flatness, -1, 1);
+    check.within("min-determinant", quality.determinant, -any, any);
+}
+
 void checkOutput(const OutputOptions& output, Checker& check) {
     if (output.folder.empty()) check.add("out", "out is empty", "name a folder");
     for (const std::string& format : output.formats)
@@ -210,6 +228,7 @@ std::vector<Problem> validate(const Options& options) {
     check.within("sweeps", options.fit.sweeps, 0, 100);
     check.within("fit-seconds", options.fit.seconds, 0, 1e6);
     checkLayers(options.layers, check);
+    checkQuality(options.quality, check);
     checkOutput(options.output, check);
     check.within("threads", options.threads, 0, 4096);
     return check.problems;

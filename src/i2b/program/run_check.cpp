@@ -44,7 +44,7 @@ int runCheck(const CommandLine& line, Run& run) {
     QualityReport quality;
     {
         Stage stage(run.context, "quality");
-        quality = measureQuality(mesh);
+        quality = measureQuality(mesh, {}, line.given.options.quality);
         stage.items = static_cast<std::uint64_t>(mesh.cells);
     }
     fmt::print(run.out, "{}", formatQuality(quality));

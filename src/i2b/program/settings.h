@@ -48,7 +48,7 @@ struct Setting {
     std::string_view value; // what follows the option on the command line; empty for a switch
     std::string_view help;  // with the unit
     Field field;
-    std::string_view table = {};   // of a case file, [size], [feature] or [layer], where it may stand, too; empty: none
+    std::string_view table = {};   // of a case file, [size], [layer], [quality] and so on, where it may stand, too; empty: none
     std::string_view inTable = {}; // what it is called there
 };
 

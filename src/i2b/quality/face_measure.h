@@ -1,5 +1,6 @@
 // What there is to say of a face alone, one by one: measureFaces() asks it on its way over the faces.
 #pragma once
+#include "i2b/quality/dictionary_measure.h"
 #include "i2b/quality/measure_steps.h"
 #include <algorithm>
 
@@ -22,18 +23,19 @@ struct FacePart {
 
 class FaceMeasure {
   public:
-    explicit FaceMeasure(Measurement& m); // marks m.shortPoints
+    FaceMeasure(Measurement& m, const DictionaryBounds& bounds); // marks m.shortPoints
 
-    // Returns the flatness, or -1 of a face that has none; shape is filled.
-    double measure(std::int32_t id, FaceShape& shape, FacePart& part);
+    // Returns the flatness, or -1 of a face that has none; shape is filled, limits that the face alone breaks are added.
+    double measure(std::int32_t id, FaceShape& shape, FacePart& part, BrokenLimits& broken);
 
   private:
     template <class Count>
     double measure(std::int32_t id, std::span<const std::int32_t> v, Count n, Vec3* point, Vec3* edge,
-                   FaceShape& shape, FacePart& part);
+                   FaceShape& shape, FacePart& part, BrokenLimits& broken);
     void markShortEdges(std::span<const std::int32_t> v, const Vec3* edge);
 
     Measurement& m_;
+    const DictionaryBounds& bounds_;
     double maxSine_, short2_;
     std::vector<Vec3> points_, edges_;
 };

@@ -282,6 +282,38 @@ void extended(CheckTable& t, const QualityReport& r, const Numbers& num) {
           inside ? t.figures(r.minVolumeRatio, r.meanVolumeRatio, r.limits.volumeRatio) : Row{});
 }
 
+// The limits of the mesh quality dictionary: what is beyond each, whatever checkMesh's other checks say.
+std::string dictionaryText(const QualityReport& r, const Numbers& num) {
+    const auto name = [&](const std::string& key) -> std::string {
+        static const std::pair<const char*, const char*> names[] = {
+            {"maxNonOrtho", "non-orthogonality (degrees)"}, {"minVol", "pyramid on a face (m3)"},
+            {"minTetQuality", "tetrahedra of a face"}, {"maxConcave", "inward corner of a face (degrees)"},
+            {"minArea", "face area (m2)"}, {"maxInternalSkewness", "skewness inside"},
+            {"maxBoundarySkewness", "skewness on the boundary"}, {"minFaceWeight", "face weight"},
+            {"minVolRatio", "volume ratio of neighbours"}, {"minTwist", "twist of a face (cosine)"},
+            {"minTriangleTwist", "twist of its triangles (cosine)"}, {"minFaceFlatness", "flatness, triangles over face"},
+            {"minDeterminant", "determinant, by all faces"}};
+        const auto* const found = std::find_if(std::begin(names), std::end(names), [&](const auto& n) { return key == n.first; });
+        return found == std::end(names) ? key : found->second;
+    };
+    Columns t("<<>>><");
+    t.add({"Mesh quality dictionary", "entry", "worst", "limit", "beyond", "where (m)"});
+    for (const DictionaryCheck& check : r.dictionary) {
+        std::string worst, beyond = check.asked ? "-" : "not asked";
+        if (check.key == "maxNonOrtho" && r.internalFaces > 0) worst = num(r.maxNonOrthogonality);
+        if (check.key == "minArea") worst = num(r.minFaceArea);
+        if (check.key == "minFaceWeight" && r.internalFaces > 0) worst = num(r.minFaceWeight);
+        if (check.key == "minVolRatio" && r.internalFaces > 0) worst = num(r.minVolumeRatio);
+        if (check.key == "minDeterminant") worst = num(r.minFullness);
+        if (check.faces > 0) beyond = fmt::format("{} faces", check.faces);
+        if (check.cells > 0) beyond = fmt::format("{} faces of {} cells", check.faces, check.cells);
+        t.add({"  " + name(check.key), check.key, worst, num(check.limit), beyond, check.faces > 0 ? num(check.worst) : ""});
+    }
+    return t.text() + (r.dictionaryFaces == 0 ? std::string("no face is beyond a limit of the dictionary\n")
+                                              : fmt::format("{} of {} faces are beyond a limit of the dictionary\n",
+                                                            r.dictionaryFaces, r.faces));
+}
+
 } // namespace
 
 std::string formatQuality(const QualityReport& report, int digits) {
@@ -290,7 +322,7 @@ std::string formatQuality(const QualityReport& report, int digits) {
     topology(checks, report);
     geometry(checks, report, num);
     extended(checks, report, num);
-    return fmt::format("{}\n{}\n{}\n{}", meshText(report, num), partsText(report, num), checks.text(),
+    return fmt::format("{}\n{}\n{}\n{}\n{}", meshText(report, num), partsText(report, num), checks.text(), dictionaryText(report, num),
                        report.ok()
                            ? "all checks pass\n"
                            : fmt::format("{} of {} checks fail\n", report.failedChecks, checks.checks()));

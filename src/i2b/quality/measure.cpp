@@ -75,8 +75,8 @@ Box pointBox(const std::vector<Vec3>& points) {
 
 } // namespace
 
-QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits) {
-    Measurement m{mesh, limits, {}, {}, {}, {}, {}};
+QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits, const DictionaryLimits& dictionary) {
+    Measurement m{mesh, limits, dictionary, {}, {}, {}, {}, {}, {}, {}};
     m.report.limits = limits;
     m.report.cells = mesh.cells;
     m.report.faces = mesh.faces();

@@ -1,147 +1,23 @@
-#include "i2b/quality/cell_edges.h"
+#include "i2b/quality/cell_addressing.h"
+#include "i2b/quality/dictionary_measure.h"
+#include "i2b/quality/glance_hexes.h"
 #include "i2b/quality/measure_steps.h"
 #include "i2b/quality/measures.h"
-#include <map>
 
 namespace i2b {
 namespace {
 
 using Index = std::size_t;
 constexpr double tinyLength = 1e-300, beyondAll = 1e300;
-constexpr double planarCosine = 1e-6; // face centres nearer a face's plane than this make a cell concave
 
-struct CellPart {
-    Tally illegal, zipUp, multiFaces, oneInternal, twoInternal, open, aspect, zeroVolume, determinant,
-        concave;
-    std::int64_t openByEdges = 0, unordered = 0, multiplyConnected = 0;
-    Extremes openness, aspectRatio, volume, determinants;
-    MeshStatistics shapes;
-    std::map<std::int64_t, std::int64_t> polyhedra;
-    std::vector<std::int32_t> unorderedFaces;
-
-    void join(const CellPart& o) {
-        illegal.join(o.illegal), zipUp.join(o.zipUp), oneInternal.join(o.oneInternal),
-            twoInternal.join(o.twoInternal);
-        open.join(o.open), aspect.join(o.aspect), zeroVolume.join(o.zeroVolume),
-            determinant.join(o.determinant);
-        concave.join(o.concave);
-        openByEdges += o.openByEdges, unordered += o.unordered, multiplyConnected += o.multiplyConnected;
-        openness.join(o.openness), aspectRatio.join(o.aspectRatio), volume.join(o.volume);
-        determinants.join(o.determinants);
-        shapes.hexahedra += o.shapes.hexahedra, shapes.prisms += o.shapes.prisms,
-            shapes.wedges += o.shapes.wedges;
-        shapes.pyramids += o.shapes.pyramids, shapes.tetWedges += o.shapes.tetWedges;
-        shapes.tetrahedra += o.shapes.tetrahedra, shapes.polyhedra += o.shapes.polyhedra;
-        for (const auto& [n, count] : o.polyhedra) polyhedra[n] += count;
-        unorderedFaces.insert(unorderedFaces.end(), o.unorderedFaces.begin(), o.unorderedFaces.end());
-    }
-};
-
-// Edge use by sorting, for cells with too many vertices for CellEdges.
-struct EdgeUse {
-    bool once = false, over = false;
-};
-EdgeUse sortedEdgeUse(const PolyMesh& mesh, std::span<const std::int32_t> faces) {
-    std::vector<std::uint64_t> edges;
-    for (const std::int32_t f : faces) {
-        const std::span<const std::int32_t> v = mesh.face(f);
-        for (Index i = 0; i < v.size(); ++i) {
-            const std::int32_t a = v[i], b = v[i + 1 == v.size() ? 0 : i + 1];
-            edges.push_back(std::uint64_t(std::uint32_t(std::min(a, b))) << 32 |
-                            std::uint32_t(std::max(a, b)));
-        }
-    }
-    std::sort(edges.begin(), edges.end());
-    EdgeUse use;
-    for (Index i = 0, j = 0; i < edges.size(); i = j) {
-        while (j < edges.size() && edges[j] == edges[i]) ++j;
-        use.once |= j - i == 1;
-        use.over |= j - i > 2;
-    }
-    return use;
-}
-
-void checkEdges(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::int32_t cell,
-                CellEdges& edges, CellPart& part) {
-    edges.clear();
-    bool fits = true;
-    for (const std::int32_t f : faces)
-        if (!edges.addFace(mesh.face(f))) {
-            fits = false;
-            break;
-        }
-    const EdgeUse use = fits ? EdgeUse{edges.anyEdgeOnce(), edges.anyEdgeOver()} : sortedEdgeUse(mesh, faces);
-    if (use.once) ++part.openByEdges;
-    if (use.once || use.over) part.zipUp.hit(cell);
-}
-
-bool disjoint(std::span<const std::int32_t> a, std::span<const std::int32_t> b) {
-    for (const std::int32_t v : a)
-        if (std::find(b.begin(), b.end(), v) != b.end()) return false;
-    return true;
-}
-
-// By the number of triangles and quads alone where that settles it; vertices: of the cell.
-void countShape(const PolyMesh& mesh, std::span<const std::int32_t> faces, int vertices, CellPart& part) {
-    int triangles = 0, quads = 0;
-    std::span<const std::int32_t> triangle[2];
-    for (const std::int32_t f : faces) {
-        const std::span<const std::int32_t> v = mesh.face(f);
-        if (v.size() == 3)
-            triangle[triangles++ % 2] = v;
-        else if (v.size() == 4)
-            ++quads;
-    }
-    MeshStatistics& s = part.shapes;
-    const bool simple = Index(triangles + quads) == faces.size();
-    if (simple && triangles == 0 && quads == 6)
-        ++s.hexahedra;
-    else if (simple && triangles == 4 && quads == 0)
-        ++s.tetrahedra;
-    else if (simple && triangles == 4 && quads == 1)
-        ++s.pyramids;
-    else if (simple && triangles == 2 && quads == 3 && vertices == 6 && disjoint(triangle[0], triangle[1]))
-        ++s.prisms;
-    else if (simple && triangles == 2 && quads == 4 && vertices == 7)
-        ++s.wedges;
-    else if (simple && triangles == 2 && quads == 2)
-        ++s.tetWedges;
-    else
-        ++s.polyhedra, ++part.polyhedra[static_cast<std::int64_t>(faces.size())];
-}
-
-// Internal faces of a cell should lead to its higher neighbours in their order.
-void checkOrder(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::int32_t cell, CellPart& part,
-                std::vector<std::pair<std::int32_t, std::int32_t>>& scratch) {
-    const std::int32_t internal = mesh.internalFaces();
-    std::int32_t lastCell = -1, lastFace = -1;
-    bool ordered = true;
-    scratch.clear();
-    for (const std::int32_t f : faces) {
-        if (f >= internal) continue;
-        const std::int32_t owner = mesh.owner[Index(f)], neighbour = mesh.neighbour[Index(f)];
-        const std::int32_t other = neighbour == cell ? owner : neighbour;
-        if (other <= cell) continue;
-        ordered = ordered && other > lastCell && f > lastFace;
-        lastCell = other, lastFace = f;
-        scratch.emplace_back(other, f);
-    }
-    if (ordered) return;
-    std::stable_sort(scratch.begin(), scratch.end(), [](auto& a, auto& b) { return a.first < b.first; });
-    bool multiple = false;
-    for (Index i = 1; i < scratch.size(); ++i) {
-        const auto& [before, beforeFace] = scratch[i - 1];
-        const auto& [here, face] = scratch[i];
-        if (here == before) {
-            multiple = true;
-            part.unorderedFaces.push_back(beforeFace);
-            part.unorderedFaces.push_back(face);
-        } else if (face < beforeFace) {
-            ++part.unordered;
-            part.unorderedFaces.push_back(face);
-        }
-    }
-    if (multiple) ++part.multiplyConnected;
+// A sixth of the surface (m^2, summed along the axes) over the volume to the power of two thirds, or aspect where that is
+// more. The power is costly, and of no account where it clearly leaves the ratio below what is known to be reached.
+double roundness(double aspect, double surface, double volume, double known) {
+    volume = std::max(tinyDivisor, volume);
+    const double floor = std::max(aspect, known) * 0.999;
+    const bool below = volume > 1e-90 && surface > 1e-90 &&
+                       surface * surface * surface < floor * floor * floor * volume * volume;
+    return below ? aspect : std::max(aspect, surface / std::pow(volume, 2.0 / 3.0));
 }
 
 void checkClosedness(const Measurement& m, std::span<const std::int32_t> faces,
@@ -164,13 +40,9 @@ void checkClosedness(const Measurement& m, std::span<const std::int32_t> faces,
         most = std::max(most, sizes[k]);
     }
     double aspect = most / (least + tinyDivisor);
-    const double volume = std::max(tinyDivisor, m.moments[Index(cell)].volume);
     const double surface = 1.0 / 6.0 * (sizes.x + sizes.y + sizes.z);
-    // The power is costly, and of no account where it clearly leaves the ratio below both maximum and limit.
-    const double floor = std::max(aspect, std::min(part.aspectRatio.most, m.limits.aspectRatio)) * 0.999;
-    const bool below = volume > 1e-90 && surface > 1e-90 &&
-                       surface * surface * surface < floor * floor * floor * volume * volume;
-    if (directions.count == 3 && !below) aspect = std::max(aspect, surface / std::pow(volume, 2.0 / 3.0));
+    const double known = std::min(part.aspectRatio.most, m.limits.aspectRatio);
+    if (directions.count == 3) aspect = roundness(aspect, surface, m.moments[Index(cell)].volume, known);
     part.openness.add(openness);
     part.aspectRatio.add(aspect);
     if (openness > m.limits.closedness) part.open.hit(cell, openness);
@@ -197,12 +69,6 @@ bool isConcave(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::s
         }
     }
     return false;
-}
-
-int internalFaces(const PolyMesh& mesh, std::span<const std::int32_t> faces) {
-    int n = 0;
-    for (const std::int32_t f : faces) n += f < mesh.internalFaces() ? 1 : 0;
-    return n;
 }
 
 void storeOrder(Measurement& m, CellPart& total) {
@@ -235,6 +101,8 @@ void store(Measurement& m, CellPart& total, double volumeSum, double determinant
     r.openCells = total.open.count, r.highAspectRatioCells = total.aspect.count;
     r.openCellsByEdges = total.openByEdges;
     r.smallDeterminantCells = total.determinant.count, r.concaveCells = total.concave.count;
+    r.minFullness = m.mesh.cells > 0 ? total.fullness.least : 0;
+    m.hollowCells = std::move(total.hollow), m.hollowFaces = std::move(total.hollowFaces);
     r.statistics = total.shapes;
     r.statistics.polyhedraByFaces.assign(total.polyhedra.begin(), total.polyhedra.end());
     t.illegalCells = total.illegal, t.zipUpCells = total.zipUp;
@@ -244,53 +112,139 @@ void store(Measurement& m, CellPart& total, double volumeSum, double determinant
     t.underdeterminedCells = total.determinant, t.concaveCells = total.concave;
 }
 
-} // namespace
-
-void measureCells(Measurement& m) {
-    const PolyMesh& mesh = m.mesh;
-    const auto cells = static_cast<Index>(mesh.cells);
+Directions directionsOf(const QualityReport& report) {
     Directions directions;
     directions.count = 0;
     for (int k = 0; k < 3; ++k) {
-        directions.valid[Index(k)] = m.report.geometricDirections[Index(k)] == 1;
+        directions.valid[Index(k)] = report.geometricDirections[Index(k)] == 1;
         if (directions.valid[Index(k)])
             ++directions.count;
         else
             directions.missing = k;
     }
+    return directions;
+}
+
+// Cells one after another: what their addressing says of all of them; the geometry of those with six quadrilaterals for
+// faces eight at a time, and one by one of those that these leave over.
+class CellStretch {
+  public:
+    // knownAspect: a ratio that cells before these reach
+    CellStretch(Measurement& m, const Directions& directions, double dictionaryDeterminant, double knownAspect)
+        : m_(m), directions_(directions), fullness_(dictionaryDeterminant), knownAspect_(knownAspect), faceShapes_(m.mesh), addressing_(m.mesh),
+          bounds_{m.limits.smallVolume, m.limits.closedness, m.limits.aspectRatio, m.limits.determinant, fullness_} {}
+
+    // determinants: of the first cell
+    void measure(Index begin, Index end, CellPart& part, double* determinants) {
+        closer_.clear();
+        for (Index c = begin; c < end; ++c) {
+            const auto cell = static_cast<std::int32_t>(c);
+            const std::span<const std::int32_t> faces = m_.cellFaces[cell];
+            const bool hex = isHex(faces);
+            addressing_.measure(cell, faces, hex, part);
+            if (!hex || directions_.count != 3) {
+                closer_.push_back(cell);
+                continue;
+            }
+            take(cell, faces);
+            if (taken_ == laneCount) glance(begin, part, determinants);
+        }
+        if (taken_ > 0) glance(begin, part, determinants);
+        joinExtremes(part);
+        std::sort(closer_.begin(), closer_.end());
+        for (const std::int32_t cell : closer_) measureClosely(cell, part, determinants[Index(cell) - begin]);
+    }
+
+  private:
+    bool isHex(std::span<const std::int32_t> faces) const {
+        if (faces.size() != 6) return false;
+        for (const std::int32_t f : faces)
+            if (m_.mesh.faceOffsets[Index(f) + 1] - m_.mesh.faceOffsets[Index(f)] != 4) return false;
+        return true;
+    }
+
+    void take(std::int32_t cell, std::span<const std::int32_t> faces) {
+        const PolyMesh& mesh = m_.mesh;
+        for (Index i = 0; i < 6; ++i) {
+            const auto f = Index(faces[i]);
+            const std::int32_t* const v = mesh.faceVertices.data() + mesh.faceOffsets[f];
+            for (Index k = 0; k < 4; ++k) batch_.point[i][k].set(taken_, mesh.points[Index(v[k])]);
+            batch_.side[i][taken_] = mesh.owner[f] == cell ? 1 : -1;
+            batch_.inner[i][taken_] = f < mesh.neighbour.size() ? 1 : 0;
+        }
+        cell_[taken_++] = cell;
+    }
+
+    void glance(Index begin, CellPart& part, double* determinants) {
+        const Index taken = taken_;
+        while (taken_ < laneCount) take(cell_[0], m_.cellFaces[cell_[0]]); // idle lanes repeat the first
+        taken_ = 0;
+        const unsigned odd = glanceAtHexes(batch_, bounds_, extremes_);
+        for (Index lane = 0; lane < taken; ++lane) {
+            const std::int32_t cell = cell_[lane];
+            const double known = std::min(std::max(part.aspectRatio.most, knownAspect_), m_.limits.aspectRatio);
+            const double aspect = roundness(batch_.aspect[lane], batch_.surface[lane], batch_.volume[lane], known);
+            if ((odd >> lane & 1U) != 0 || aspect > m_.limits.aspectRatio) {
+                closer_.push_back(cell);
+                continue;
+            }
+            m_.moments[Index(cell)] = {batch_.centre[lane], batch_.volume[lane]};
+            determinants[Index(cell) - begin] = batch_.determinant[lane];
+            part.aspectRatio.add(aspect);
+        }
+    }
+
+    void measureClosely(std::int32_t cell, CellPart& part, double& determinant) {
+        const std::span<const std::int32_t> faces = m_.cellFaces[cell];
+        const std::span<const FaceShape> shapes = faceShapes_.of(faces);
+        CellMoments& moments = m_.moments[Index(cell)];
+        moments = measureCell(m_.mesh, faces, shapes, cell);
+        part.volume.add(moments.volume);
+        if (moments.volume < m_.limits.smallVolume) part.zeroVolume.hit(cell, -moments.volume);
+        checkClosedness(m_, faces, shapes, cell, directions_, part);
+        determinant = cellDeterminant(m_.mesh, faces, shapes, directions_);
+        part.determinants.add(determinant);
+        if (determinant < m_.limits.determinant) part.determinant.hit(cell, -determinant);
+        if (isConcave(m_.mesh, faces, shapes, cell)) part.concave.hit(cell);
+        const double fullness = cellFullness(shapes);
+        part.fullness.add(fullness);
+        if (!(fullness < fullness_)) return;
+        part.hollow.hit(cell, -fullness);
+        part.hollowFaces.insert(part.hollowFaces.end(), faces.begin(), faces.end());
+    }
+
+    void joinExtremes(CellPart& part) {
+        const auto join = [](Extremes& to, const LaneExtremes& from) { to.join({from.leastOfAll(), from.mostOfAll()}); };
+        join(part.volume, extremes_.volume), join(part.openness, extremes_.openness);
+        join(part.determinants, extremes_.determinant), join(part.fullness, extremes_.fullness);
+    }
+
+    Measurement& m_;
+    const Directions& directions_;
+    double fullness_, knownAspect_;
+    CellFaceShapes faceShapes_;
+    CellAddressing addressing_;
+    HexBounds bounds_;
+    HexBatch batch_;
+    HexExtremes extremes_;
+    std::array<std::int32_t, laneCount> cell_{};
+    Index taken_ = 0;
+    std::vector<std::int32_t> closer_;
+};
+
+} // namespace
+
+void measureCells(Measurement& m) {
+    const auto cells = static_cast<Index>(m.mesh.cells);
+    const Directions directions = directionsOf(m.report);
+    const double fullness = DictionaryBounds(m.dictionary).determinant;
     m.moments.resize(cells);
     constexpr Index block = Index(1) << 17;
     std::vector<double> determinants(std::min(block, cells));
     double volumeSum = 0, determinantSum = 0;
     CellPart total;
     const auto measure = [&](Index begin, Index end, CellPart& part) {
-        CellEdges edges;
-        CellFaceShapes faceShapes(mesh);
-        std::vector<std::pair<std::int32_t, std::int32_t>> scratch;
-        for (Index c = begin; c < end; ++c) {
-            const auto cell = static_cast<std::int32_t>(c);
-            const std::span<const std::int32_t> faces = m.cellFaces[cell];
-            const std::span<const FaceShape> shapes = faceShapes.of(faces);
-            m.moments[c] = measureCell(mesh, faces, shapes, cell);
-            if (faces.size() <= 3) part.illegal.hit(cell);
-            checkEdges(mesh, faces, cell, edges, part);
-            countShape(mesh, faces, edges.vertices(), part);
-            checkOrder(mesh, faces, cell, part, scratch);
-            const int internal = internalFaces(mesh, faces);
-            if (internal <= 1)
-                part.oneInternal.hit(cell);
-            else if (internal == 2)
-                part.twoInternal.hit(cell);
-            const double volume = m.moments[c].volume;
-            part.volume.add(volume);
-            if (volume < m.limits.smallVolume) part.zeroVolume.hit(cell, -volume);
-            checkClosedness(m, faces, shapes, cell, directions, part);
-            const double det = cellDeterminant(mesh, faces, shapes, directions);
-            determinants[c % block] = det;
-            part.determinants.add(det);
-            if (det < m.limits.determinant) part.determinant.hit(cell, -det);
-            if (isConcave(mesh, faces, shapes, cell)) part.concave.hit(cell);
-        }
+        CellStretch(m, directions, fullness, total.aspectRatio.most).measure(begin, end, part, &determinants[begin % block]);
     };
     orderedBlocks(cells, block, total, measure, [&](Index begin, Index end) {
         for (Index c = begin; c < end; ++c) {

@@ -1,4 +1,5 @@
 #include "i2b/quality/face_measure.h"
+#include "i2b/quality/glance_quads.h"
 #include "i2b/quality/measures.h"
 #include <numbers>
 
@@ -13,6 +14,7 @@ struct FaceCellPart {
     Tally nonOrtho, wrongOriented, skew, lowWeight, lowVolRatio, lowQualityTets;
     std::int64_t severe = 0, orthoErrors = 0, pyramidErrors = 0, tetErrors = 0;
     Extremes ortho, skewness, weight, ratio;
+    DictionaryPart dictionary;
 
     void join(const FaceCellPart& o) {
         nonOrtho.join(o.nonOrtho), wrongOriented.join(o.wrongOriented), skew.join(o.skew);
@@ -20,6 +22,7 @@ struct FaceCellPart {
         severe += o.severe, orthoErrors += o.orthoErrors, pyramidErrors += o.pyramidErrors,
             tetErrors += o.tetErrors;
         ortho.join(o.ortho), skewness.join(o.skewness), weight.join(o.weight), ratio.join(o.ratio);
+        dictionary.join(o.dictionary);
     }
 };
 
@@ -39,19 +42,26 @@ double tetQuality(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     return sixfold / 6 / (regularVolume * radius * radius * radius + tinyDivisor);
 }
 
-// Sign of the quality where a glance settles that its size is over the tolerance, else 0. With D six times
-// the volume and L the longest edge at a, the circumradius is at most 2.5 L^4/|D|, hence |quality| >
-// |D|^4/(49 L^12); |D|/L^3 > 1e-6 makes that 2e-26, ten thousand times the tolerance.
-int clearSign(double sixfoldVolume, double longest2) {
-    const double d2 = sixfoldVolume * sixfoldVolume;
-    if (!(d2 > 1e-12 * longest2 * longest2 * longest2) || !(d2 > 1e-280)) return 0;
-    return sixfoldVolume > 0 ? 1 : -1;
-}
+// Tetrahedra are poor whose quality is not over a tolerance. With D six times the volume and L the longest edge at one
+// corner, the circumradius is at most 2.5 L^4/|D|, hence |quality| > |D|^4/(49 L^12); where D^2/L^6 is over shape, the size of
+// the quality is clearly over the tolerance.
+struct TetTolerance {
+    explicit TetTolerance(double value) : quality(value), shape(value < 0 ? beyondAll : std::max(1e-12, 7.1 * std::sqrt(value))) {}
+
+    // Sign of the quality where a glance settles that its size is over the tolerance, else 0.
+    int clearSign(double sixfoldVolume, double longest2) const {
+        const double d2 = sixfoldVolume * sixfoldVolume;
+        if (!(d2 > shape * longest2 * longest2 * longest2) || !(d2 > 1e-280)) return 0;
+        return sixfoldVolume > 0 ? 1 : -1;
+    }
+
+    double quality, shape;
+};
 
 // The fan of triangles from vertex base, with its apex at the cell's centre: no tetrahedron at or below the
 // tolerance? (Equivalent to: the least quality is over it.)
 bool fanIsGood(const PolyMesh& mesh, std::span<const std::int32_t> v, Index base, const Vec3& apex,
-               bool owner) {
+               bool owner, const TetTolerance& tolerance) {
     const Vec3& p0 = mesh.points[Index(v[base])];
     double least = beyondAll;
     for (Index i = 1; i + 1 < v.size(); ++i) {
@@ -59,10 +69,10 @@ bool fanIsGood(const PolyMesh& mesh, std::span<const std::int32_t> v, Index base
         const Vec3* b = &mesh.points[Index(v[(i + base + 1) % v.size()])];
         if (!owner) std::swap(a, b);
         const Vec3 e0 = p0 - apex, ea = *a - apex, eb = *b - apex;
-        const int sign = clearSign(dot(cross(e0, ea), eb), std::max({norm2(e0), norm2(ea), norm2(eb)}));
+        const int sign = tolerance.clearSign(dot(cross(e0, ea), eb), std::max({norm2(e0), norm2(ea), norm2(eb)}));
         if (sign < 0) return false;
         if (sign == 0) least = std::min(least, tetQuality(apex, p0, *a, *b));
-        if (!(least > tetTolerance)) return false;
+        if (!(least > tolerance.quality)) return false;
     }
     return true;
 }
@@ -70,10 +80,10 @@ bool fanIsGood(const PolyMesh& mesh, std::span<const std::int32_t> v, Index base
 // Does any vertex serve as base of a good fan, as seen from the owner and, inside the mesh, from the
 // neighbour?
 bool hasGoodBase(const PolyMesh& mesh, std::span<const std::int32_t> v, const Vec3& owner,
-                 const Vec3* neighbour) {
+                 const Vec3* neighbour, const TetTolerance& tolerance) {
     for (Index base = 0; base < v.size(); ++base)
-        if (fanIsGood(mesh, v, base, owner, true) &&
-            (neighbour == nullptr || fanIsGood(mesh, v, base, *neighbour, false)))
+        if (fanIsGood(mesh, v, base, owner, true, tolerance) &&
+            (neighbour == nullptr || fanIsGood(mesh, v, base, *neighbour, false, tolerance)))
             return true;
     return false;
 }
@@ -81,16 +91,16 @@ bool hasGoodBase(const PolyMesh& mesh, std::span<const std::int32_t> v, const Ve
 // The tetrahedra over the triangles around the face's centre: is any not clearly on the apex's side? side is
 // -1 for the owner, whose tetrahedra are negative, 1 for the neighbour.
 bool hasBadTet(const PolyMesh& mesh, std::span<const std::int32_t> v, const Vec3& faceCentre,
-               const Vec3& apex, int side) {
+               const Vec3& apex, int side, const TetTolerance& tolerance) {
     for (Index i = 0; i < v.size(); ++i) {
         const Vec3& a = mesh.points[Index(v[i])];
         const Vec3& b = mesh.points[Index(v[i + 1 == v.size() ? 0 : i + 1])];
         const Vec3 ab = b - a, ac = faceCentre - a, ad = apex - a;
-        const int sign = clearSign(dot(cross(ab, ac), ad), std::max({norm2(ab), norm2(ac), norm2(ad)}));
+        const int sign = tolerance.clearSign(dot(cross(ab, ac), ad), std::max({norm2(ab), norm2(ac), norm2(ad)}));
         if (sign == side) continue;
         if (sign == -side) return true;
         const double quality = tetQuality(a, b, faceCentre, apex);
-        if (side > 0 ? quality < tetTolerance : quality > -tetTolerance) return true;
+        if (side > 0 ? quality < tolerance.quality : quality > -tolerance.quality) return true;
     }
     return false;
 }
@@ -100,7 +110,7 @@ bool hasBadTet(const PolyMesh& mesh, std::span<const std::int32_t> v, const Vec3
 // such a tetrahedron is longer than twice the larger of the reaches from the face's centre to its vertices
 // and to the apex. Worked out from the centre, so that both sides share the cross products.
 bool tetsClearlyGood(const PolyMesh& mesh, std::span<const std::int32_t> v, const Vec3& faceCentre,
-                     const Vec3& owner, const Vec3* neighbour) {
+                     const Vec3& owner, const Vec3* neighbour, const TetTolerance& tolerance) {
     const Vec3 toOwner = owner - faceCentre;
     const Vec3 toNeighbour = neighbour != nullptr ? *neighbour - faceCentre : -toOwner;
     double reach2 = std::max(norm2(toOwner), norm2(toNeighbour));
@@ -118,26 +128,28 @@ bool tetsClearlyGood(const PolyMesh& mesh, std::span<const std::int32_t> v, cons
         }
         here = next;
     }
-    return least > 0 && clearSign(least, 4 * reach2) > 0;
+    return least > 0 && tolerance.clearSign(least, 4 * reach2) > 0;
 }
 
 int tetErrors(const PolyMesh& mesh, std::span<const std::int32_t> v, const Vec3& faceCentre,
-              const Vec3& owner, const Vec3* neighbour) {
-    if (tetsClearlyGood(mesh, v, faceCentre, owner, neighbour)) return 0;
-    int errors = hasBadTet(mesh, v, faceCentre, owner, -1) ? 1 : 0;
-    if (neighbour != nullptr && hasBadTet(mesh, v, faceCentre, *neighbour, 1)) ++errors;
-    if (!hasGoodBase(mesh, v, owner, neighbour)) ++errors;
+              const Vec3& owner, const Vec3* neighbour, const TetTolerance& tolerance) {
+    if (tolerance.quality >= 0 && tetsClearlyGood(mesh, v, faceCentre, owner, neighbour, tolerance)) return 0;
+    int errors = hasBadTet(mesh, v, faceCentre, owner, -1, tolerance) ? 1 : 0;
+    if (neighbour != nullptr && hasBadTet(mesh, v, faceCentre, *neighbour, 1, tolerance)) ++errors;
+    if (!hasGoodBase(mesh, v, owner, neighbour, tolerance)) ++errors;
     return errors;
 }
 
 class FaceCells {
   public:
-    explicit FaceCells(const Measurement& m)
-        : m_(m), mesh_(m.mesh), internal_(Index(m.mesh.internalFaces())),
-          severeCosine_(std::cos(m.limits.nonOrthogonality * std::numbers::pi / 180)) {}
+    FaceCells(const Measurement& m, const DictionaryBounds& bounds)
+        : m_(m), mesh_(m.mesh), bounds_(bounds), internal_(Index(m.mesh.internalFaces())),
+          severeCosine_(std::cos(m.limits.nonOrthogonality * std::numbers::pi / 180)), tets_(tetTolerance),
+          dictionaryTets_(bounds.tetQuality),
+          leastSkewness_(std::min({m.limits.skewness, bounds.internalSkewness, bounds.boundarySkewness})) {}
 
-    // values: where the face is internal
-    void measure(Index f, const FaceShape& shape, FaceCellPart& part, PairValues* values) const {
+    // values: where the face is internal. broken: what the face breaks alone.
+    void measure(Index f, const FaceShape& shape, FaceCellPart& part, PairValues* values, BrokenLimits& broken) const {
         const auto id = static_cast<std::int32_t>(f);
         const CellMoments& own = m_.moments[static_cast<Index>(mesh_.owner[f])];
         const Vec3* neiCentre = nullptr;
@@ -151,16 +163,39 @@ class FaceCells {
             leastPyramid = std::min(leastPyramid, pyramid);
             *values = pairValues(shape, own, nei);
             judge(id, *values, part);
+            judge(*values, own, nei, broken);
         }
-        const double least = std::min(part.skewness.most, m_.limits.skewness); // less is not asked for
+        if (leastPyramid / 3 < bounds_.pyramidVolume) broken.add(DictionaryLimit::pyramidVolume, -leastPyramid);
+        const double least = std::min(part.skewness.most, leastSkewness_); // less is not asked for
         const double skew = faceSkewness(mesh_, id, shape, own.centre, neiCentre, least);
         part.pyramidErrors += wrong;
         if (wrong > 0) part.wrongOriented.hit(id, -leastPyramid);
         part.skewness.add(skew);
         if (skew > m_.limits.skewness) part.skew.hit(id, skew);
-        const int errors = tetErrors(mesh_, mesh_.face(id), shape.centre, own.centre, neiCentre);
+        if (skew > (neiCentre ? bounds_.internalSkewness : bounds_.boundarySkewness))
+            broken.add(neiCentre ? DictionaryLimit::internalSkewness : DictionaryLimit::boundarySkewness, skew);
+        const int errors = tetErrors(mesh_, mesh_.face(id), shape.centre, own.centre, neiCentre, tets_);
         part.tetErrors += errors;
         if (errors > 0) part.lowQualityTets.hit(id, -leastPyramid);
+        if (bounds_.tetsAsked && tetErrors(mesh_, mesh_.face(id), shape.centre, own.centre, neiCentre, dictionaryTets_) > 0)
+            broken.add(DictionaryLimit::tetQuality, -leastPyramid);
+        addTwist(mesh_, id, shape, (neiCentre ? *neiCentre : shape.centre) - own.centre, bounds_, broken);
+        if (broken.any()) part.dictionary.hit(id, broken);
+    }
+
+    QuadBounds quadBounds(double shortEdge2) const {
+        return {.shortEdge2 = shortEdge2,
+                .faceArea = std::max(m_.limits.faceArea, bounds_.faceArea),
+                .flatness = m_.limits.flatness,
+                .spread = std::max(0.0, bounds_.flatness * (1 + margin)),
+                .cosine = std::max(severeCosine_, bounds_.cosine),
+                .weight = std::max(m_.limits.faceWeight, bounds_.faceWeight),
+                .ratio = std::max(m_.limits.volumeRatio, bounds_.volumeRatio),
+                .skewness = leastSkewness_,
+                .pyramid3 = std::max(0.0, 3 * bounds_.pyramidVolume * (1 + margin)),
+                .tetShape = std::max(tets_.shape, bounds_.tetQuality > 0 ? dictionaryTets_.shape : 0),
+                .twist = std::max(-2.0, bounds_.twist),
+                .triangleTwist = std::max(-2.0, bounds_.triangleTwist)};
     }
 
   private:
@@ -174,10 +209,109 @@ class FaceCells {
         part.ortho.add(values.ortho), part.weight.add(values.weight), part.ratio.add(values.ratio);
     }
 
+    // by the dictionary
+    void judge(const PairValues& values, const CellMoments& own, const CellMoments& nei, BrokenLimits& broken) const {
+        if (values.ortho < bounds_.cosine) broken.add(DictionaryLimit::nonOrthogonality, -values.ortho);
+        if (values.weight < bounds_.faceWeight) broken.add(DictionaryLimit::faceWeight, -values.weight);
+        const double sizes[2] = {std::abs(own.volume), std::abs(nei.volume)};
+        const double ratio = std::min(sizes[0], sizes[1]) / (std::max(sizes[0], sizes[1]) + 1e-300);
+        if (ratio < bounds_.volumeRatio) broken.add(DictionaryLimit::volumeRatio, -ratio);
+    }
+
+    static constexpr double margin = 1e-6; // a glance leaves what is nearer a limit to a closer look
     const Measurement& m_;
     const PolyMesh& mesh_;
+    const DictionaryBounds& bounds_;
     Index internal_;
     double severeCosine_;
+    TetTolerance tets_, dictionaryTets_;
+    double leastSkewness_;
+};
+
+struct FacesPart {
+    FacePart alone;
+    FaceCellPart withCells;
+    void join(const FacesPart& o) { alone.join(o.alone), withCells.join(o.withCells); }
+};
+
+// Faces one after another: quadrilaterals inside the mesh eight at a time, and one by one what these leave over.
+class FaceStretch {
+  public:
+    FaceStretch(Measurement& m, const DictionaryBounds& dictionary, const FaceCells& faceCells, const QuadBounds& bounds)
+        : m_(m), faceCells_(faceCells), bounds_(bounds), alone_(m, dictionary) {}
+
+    // flat, values: of the first face; flat -1 of faces that have none, values of internal faces only
+    void measure(Index begin, Index end, FacesPart& part, double* flat, PairValues* values) {
+        const Index internal = m_.mesh.neighbour.size();
+        closer_.clear();
+        for (Index f = begin; f < end; ++f) {
+            if (f >= internal || !take(f))
+                closer_.push_back(f);
+            else if (taken_ == laneCount)
+                glance(begin, part, flat, values);
+        }
+        if (taken_ > 0) glance(begin, part, flat, values);
+        joinExtremes(part);
+        std::sort(closer_.begin(), closer_.end());
+        for (const Index f : closer_) {
+            FaceShape shape;
+            BrokenLimits broken;
+            flat[f - begin] = alone_.measure(static_cast<std::int32_t>(f), shape, part.alone, broken);
+            faceCells_.measure(f, shape, part.withCells, &values[f - begin], broken);
+        }
+    }
+
+  private:
+    bool take(Index f) {
+        const PolyMesh& mesh = m_.mesh;
+        const Index first = mesh.faceOffsets[f];
+        if (mesh.faceOffsets[f + 1] - first != 4) return false;
+        const std::int32_t* const v = mesh.faceVertices.data() + first;
+        if (v[0] == v[1] || v[0] == v[2] || v[0] == v[3] || v[1] == v[2] || v[1] == v[3] || v[2] == v[3]) return false;
+        for (Index i = 0; i < 4; ++i) batch_.point[i].set(taken_, mesh.points[Index(v[i])]);
+        const CellMoments& own = m_.moments[Index(mesh.owner[f])];
+        const CellMoments& nei = m_.moments[Index(mesh.neighbour[f])];
+        batch_.own.set(taken_, own.centre), batch_.nei.set(taken_, nei.centre);
+        batch_.ownVolume[taken_] = own.volume, batch_.neiVolume[taken_] = nei.volume;
+        face_[taken_++] = f;
+        return true;
+    }
+
+    void glance(Index begin, FacesPart& part, double* flat, PairValues* values) {
+        const Index taken = taken_;
+        while (taken_ < laneCount) take(face_[0]); // idle lanes repeat the first
+        taken_ = 0;
+        const unsigned odd = glanceAtQuads(batch_, bounds_, extremes_);
+        for (Index lane = 0; lane < taken; ++lane) {
+            if ((odd >> lane & 1U) != 0) {
+                closer_.push_back(face_[lane]);
+                continue;
+            }
+            const Index f = face_[lane] - begin;
+            flat[f] = batch_.flat[lane];
+            values[f] = {batch_.ortho[lane], batch_.weight[lane], batch_.ratio[lane]};
+            ++part.alone.flatnessFaces;
+        }
+    }
+
+    void joinExtremes(FacesPart& part) {
+        const auto join = [](Extremes& to, const LaneExtremes& from) { to.join({from.leastOfAll(), from.mostOfAll()}); };
+        join(part.alone.edge2, extremes_.edge2), join(part.alone.area, extremes_.area);
+        join(part.alone.flatness, extremes_.flatness), join(part.withCells.ortho, extremes_.ortho);
+        join(part.withCells.weight, extremes_.weight), join(part.withCells.ratio, extremes_.ratio);
+        join(part.withCells.skewness, extremes_.skewness);
+        extremes_ = {};
+    }
+
+    Measurement& m_;
+    const FaceCells& faceCells_;
+    const QuadBounds& bounds_;
+    FaceMeasure alone_;
+    QuadBatch batch_;
+    QuadExtremes extremes_;
+    std::array<Index, laneCount> face_{};
+    Index taken_ = 0;
+    std::vector<Index> closer_;
 };
 
 double degrees(double cosine) {
@@ -217,27 +351,19 @@ void storeFaceCells(Measurement& m, const FaceCellPart& total, const Sums& sum) 
 
 // Faces alone and with their cells in one pass, so that nothing of them need be kept.
 void measureFaces(Measurement& m) {
-    struct Part {
-        FacePart alone;
-        FaceCellPart withCells;
-        void join(const Part& o) { alone.join(o.alone), withCells.join(o.withCells); }
-    };
     const auto faces = static_cast<Index>(m.mesh.faces()),
                internal = static_cast<Index>(m.mesh.internalFaces());
     m.shortPoints.assign(m.mesh.points.size(), 0);
-    const FaceCells faceCells(m);
+    const DictionaryBounds bounds(m.dictionary);
+    const FaceCells faceCells(m, bounds);
+    const QuadBounds quads = faceCells.quadBounds(nearDistanceSquared(m.report.box));
     constexpr Index block = Index(1) << 17;
     std::vector<PairValues> values(std::min(block, faces));
     std::vector<double> flat(values.size());
     Sums sum;
-    Part total;
-    const auto measure = [&](Index begin, Index end, Part& part) {
-        FaceMeasure alone(m);
-        FaceShape shape;
-        for (Index f = begin; f < end; ++f) {
-            flat[f % block] = alone.measure(static_cast<std::int32_t>(f), shape, part.alone);
-            faceCells.measure(f, shape, part.withCells, &values[f % block]);
-        }
+    FacesPart total;
+    const auto measure = [&](Index begin, Index end, FacesPart& part) {
+        FaceStretch(m, bounds, faceCells, quads).measure(begin, end, part, &flat[begin % block], &values[begin % block]);
     };
     orderedBlocks(faces, block, total, measure, [&](Index begin, Index end) {
         for (Index f = begin; f < end; ++f)
@@ -250,6 +376,9 @@ void measureFaces(Measurement& m) {
     });
     storeFaces(m, total.alone, sum.flat);
     storeFaceCells(m, total.withCells, sum);
+    const std::int32_t worst = m.hollowCells.worstId;
+    storeDictionary(m.mesh, m.dictionary, total.withCells.dictionary, m.hollowCells, std::move(m.hollowFaces),
+                    worst < 0 ? Vec3{} : m.moments[Index(worst)].centre, m.report);
 }
 
 } // namespace i2b

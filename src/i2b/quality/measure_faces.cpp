@@ -74,24 +74,24 @@ double flatness(const Vec3* point, const Vec3* edge, Count n, const Vec3& centre
 
 } // namespace
 
-FaceMeasure::FaceMeasure(Measurement& m)
-    : m_(m), maxSine_(std::sin(m.limits.concavity * std::numbers::pi / 180)),
+FaceMeasure::FaceMeasure(Measurement& m, const DictionaryBounds& bounds)
+    : m_(m), bounds_(bounds), maxSine_(std::sin(m.limits.concavity * std::numbers::pi / 180)),
       short2_(nearDistanceSquared(m.report.box)) {}
 
-double FaceMeasure::measure(std::int32_t id, FaceShape& shape, FacePart& part) {
+double FaceMeasure::measure(std::int32_t id, FaceShape& shape, FacePart& part, BrokenLimits& broken) {
     const std::span<const std::int32_t> v = m_.mesh.face(id);
     if (v.size() == 4) {
         std::array<Vec3, 4> point, edge;
-        return measure(id, v, std::integral_constant<Index, 4>{}, point.data(), edge.data(), shape, part);
+        return measure(id, v, std::integral_constant<Index, 4>{}, point.data(), edge.data(), shape, part, broken);
     }
     points_.resize(v.size());
     edges_.resize(v.size());
-    return measure(id, v, v.size(), points_.data(), edges_.data(), shape, part);
+    return measure(id, v, v.size(), points_.data(), edges_.data(), shape, part, broken);
 }
 
 template <class Count>
 double FaceMeasure::measure(std::int32_t id, std::span<const std::int32_t> v, Count n, Vec3* point, Vec3* edge,
-                            FaceShape& shape, FacePart& part) {
+                            FaceShape& shape, FacePart& part, BrokenLimits& broken) {
     for (Index i = 0; i < n; ++i) point[i] = m_.mesh.points[Index(v[i])];
     double shortest2 = std::numeric_limits<double>::infinity();
     for (Index i = 0; i < n; ++i) {
@@ -113,7 +113,10 @@ double FaceMeasure::measure(std::int32_t id, std::span<const std::int32_t> v, Co
         const double sine = concavitySine(m_.mesh, v, shape.area, area, maxSine_);
         part.maxConcaveSine = std::max(part.maxConcaveSine, sine);
         if (sine > rounding) part.concave.hit(id, sine);
+        const double severe = bounds_.concavityAsked ? concavitySine(m_.mesh, v, shape.area, area, bounds_.sine) : 0;
+        if (severe > 0) broken.add(DictionaryLimit::concavity, severe);
     }
+    addFaceLimits(m_.mesh, id, shape, bounds_, broken);
     if (n <= 3 || !(area > tinyArea)) return -1;
     const double value = area > tinyLength ? flatness(point, edge, n, shape.centre, area) : 1.0;
     ++part.flatnessFaces;

@@ -9,40 +9,73 @@ namespace {
 
 using Index = std::size_t;
 
-// Which points may have another one nearby: those whose cell of a coarse lattice, or one that they nearly
-// reach, has been entered before or after by another point, or so a table of bits says. It errs to one side
-// only: points of different cells may have one bit.
+// Points that may have another one nearby: all whose cell of a coarse lattice, or one that they nearly reach, is that of
+// another point, too, or so the cell's hash says. It errs to one side only: different cells may have one hash. Hashes are
+// shared out by their high bits first, so that the table of bits that tells which comes twice is small and near.
 class Crowded {
   public:
-    Crowded(const std::vector<Vec3>& points, double reach) : points_(points), reach_(reach) {
-        Index size = Index(1) << 16;
-        while (size < 16 * points.size() && size < Index(1) << 30) size *= 2;
-        mask_ = size - 1;
-        once_.assign(size / 64, 0);
-        twice_.assign(size / 64, 0);
-        parallelFor(
-            points.size(),
-            [&](Index i) {
-                forCells(points[i], [&](Index slot) {
-                    const std::uint64_t bit = std::uint64_t(1) << (slot % 64);
-                    const std::uint64_t before = std::atomic_ref<std::uint64_t>(once_[slot / 64])
-                                                     .fetch_or(bit, std::memory_order_relaxed);
-                    if ((before & bit) != 0)
-                        std::atomic_ref<std::uint64_t>(twice_[slot / 64])
-                            .fetch_or(bit, std::memory_order_relaxed);
-                });
-            },
-            4096);
-    }
-    bool operator()(Index i) const {
-        bool crowded = false;
-        forCells(points_[i],
-                 [&](Index slot) { crowded = crowded || (twice_[slot / 64] >> (slot % 64) & 1) != 0; });
-        return crowded;
+    Crowded(const std::vector<Vec3>& points, double reach) : points_(points), reach_(reach) {}
+
+    std::vector<std::int32_t> find() const { // in no order, with repetitions
+        const Index chunks = (points_.size() + chunk - 1) / chunk;
+        std::vector<std::vector<Entry>> sorted(chunks); // of each chunk, share after share
+        std::vector<std::array<std::uint32_t, shares + 1>> starts(chunks);
+        parallelChunks(points_.size(), chunk, [&](Index begin, Index end, Index c) { shareOut(begin, end, sorted[c], starts[c]); });
+        std::vector<std::vector<std::int32_t>> found(shares);
+        parallelFor(shares, [&](Index share) { found[share] = findTwice(sorted, starts, share); }, 1);
+        std::vector<std::int32_t> all;
+        for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
+        return all;
     }
 
   private:
     static constexpr double cellsPerReach = 1.0 / 61; // lattices of meshes have other spacings
+    static constexpr Index chunk = Index(1) << 16, shares = 128;
+    struct Entry {
+        std::uint32_t hash;
+        std::int32_t point;
+    };
+
+    void shareOut(Index begin, Index end, std::vector<Entry>& sorted, std::array<std::uint32_t, shares + 1>& starts) const {
+        std::vector<Entry> entries;
+        entries.reserve(end - begin);
+        starts.fill(0);
+        for (Index i = begin; i < end; ++i)
+            forCells(points_[i], [&](std::uint32_t hash) {
+                entries.push_back({hash, static_cast<std::int32_t>(i)});
+                ++starts[shareOf(hash) + 1];
+            });
+        for (Index s = 0; s < shares; ++s) starts[s + 1] += starts[s];
+        std::array<std::uint32_t, shares + 1> next = starts;
+        sorted.resize(entries.size());
+        for (const Entry& e : entries) sorted[next[shareOf(e.hash)]++] = e;
+    }
+
+    std::vector<std::int32_t> findTwice(const std::vector<std::vector<Entry>>& sorted,
+                                        const std::vector<std::array<std::uint32_t, shares + 1>>& starts, Index share) const {
+        Index bits = Index(1) << 12; // about 32 for each point
+        while (bits < 32 * points_.size() / shares && bits < Index(1) << 25) bits *= 2;
+        std::vector<std::uint64_t> once(bits / 64), twice(bits / 64);
+        const auto forEntries = [&](const auto& body) {
+            for (Index c = 0; c < sorted.size(); ++c)
+                for (Index i = starts[c][share]; i < starts[c][share + 1]; ++i) body(sorted[c][i]);
+        };
+        const auto slotOf = [&](const Entry& e) { return Index(e.hash) & (bits - 1); };
+        forEntries([&](const Entry& e) {
+            const Index slot = slotOf(e);
+            const std::uint64_t bit = std::uint64_t(1) << (slot % 64);
+            twice[slot / 64] |= once[slot / 64] & bit;
+            once[slot / 64] |= bit;
+        });
+        std::vector<std::int32_t> found;
+        forEntries([&](const Entry& e) {
+            const Index slot = slotOf(e);
+            if ((twice[slot / 64] >> (slot % 64) & 1) != 0) found.push_back(e.point);
+        });
+        return found;
+    }
+
+    static Index shareOf(std::uint32_t hash) { return hash >> 25; }
 
     // All cells within reach of p, each once: mostly one.
     template <class Body>
@@ -55,35 +88,28 @@ class Crowded {
         }
         for (std::int64_t x = lo[0]; x <= hi[0]; ++x)
             for (std::int64_t y = lo[1]; y <= hi[1]; ++y)
-                for (std::int64_t z = lo[2]; z <= hi[2]; ++z) body(slotOf(x, y, z));
+                for (std::int64_t z = lo[2]; z <= hi[2]; ++z) body(hashOf(x, y, z));
     }
     static std::int64_t cellOf(double x) {
         if (!(std::abs(x) < 1e18)) return 0; // no number, or out of all proportion
         const auto whole = static_cast<std::int64_t>(x);
         return static_cast<double>(whole) > x ? whole - 1 : whole;
     }
-    Index slotOf(std::int64_t x, std::int64_t y, std::int64_t z) const {
+    static std::uint32_t hashOf(std::int64_t x, std::int64_t y, std::int64_t z) {
         std::uint64_t h = std::uint64_t(x) * 0x9e3779b97f4a7c15U;
         h = (h ^ (h >> 29) ^ std::uint64_t(y)) * 0xbf58476d1ce4e5b9U;
         h = (h ^ (h >> 31) ^ std::uint64_t(z)) * 0x94d049bb133111ebU;
-        return Index(h >> 32) & mask_;
+        return static_cast<std::uint32_t>(h >> 32);
     }
 
     const std::vector<Vec3>& points_;
     double reach_;
-    Index mask_ = 0;
-    std::vector<std::uint64_t> once_, twice_;
 };
 
 struct Near {
     double key;
     std::int32_t point;
 };
-struct NearList {
-    std::vector<Near> list;
-    void join(const NearList& next) { list.insert(list.end(), next.list.begin(), next.list.end()); }
-};
-
 // Marks the ends of all pairs closer than the distance. Sorted along an odd direction, near points are near
 // in the list, and regular meshes do not put whole planes of points at one key. checkMesh names a pair only
 // if the squared distances of its points from the origin differ by less than near2 too; hence the last test.
@@ -91,13 +117,10 @@ void markNear(const std::vector<Vec3>& points, double near2, std::vector<std::ui
     const Vec3 direction = normalized({0.5377, 0.6180339887, 0.5731});
     if (!(near2 > 0)) return; // nothing is nearer
     const double reach = std::sqrt(near2) * 1.001;
-    const Crowded crowded(points, reach);
-    NearList candidates;
-    orderedLoop(points.size(), candidates, [&](Index begin, Index end, NearList& part) {
-        for (Index i = begin; i < end; ++i)
-            if (crowded(i)) part.list.push_back({dot(direction, points[i]), static_cast<std::int32_t>(i)});
-    });
-    std::vector<Near>& list = candidates.list;
+    const std::vector<std::int32_t> crowded = Crowded(points, reach).find();
+    std::vector<Near> list(crowded.size());
+    parallelFor(
+        crowded.size(), [&](Index i) { list[i] = {dot(direction, points[Index(crowded[i])]), crowded[i]}; }, 4096);
     tbb::parallel_sort(list.begin(), list.end(), [](const Near& a, const Near& b) {
         return a.key < b.key || (a.key == b.key && a.point < b.point);
     });
@@ -107,6 +130,7 @@ void markNear(const std::vector<Vec3>& points, double near2, std::vector<std::ui
             const Vec3& p = points[Index(list[i].point)];
             const double size2 = norm2(p);
             for (Index j = i + 1; j < list.size() && list[j].key - list[i].key <= reach; ++j) {
+                if (list[j].point == list[i].point) continue; // of two cells
                 const Vec3& q = points[Index(list[j].point)];
                 if (!(norm2(p - q) < near2)) continue;
                 const double other2 = norm2(q);

@@ -21,11 +21,14 @@ struct QualityTallies {
 struct Measurement {
     const PolyMesh& mesh;
     const QualityLimits& limits;
+    const DictionaryLimits& dictionary;
     Rows cellFaces;
     RawVector<CellMoments> moments; // per cell
     QualityTallies tallies;
     QualityReport report;
     std::vector<std::uint8_t> shortPoints; // per point: 1 at the end of a short edge
+    Tally hollowCells;                     // under the dictionary's limit of determinants
+    std::vector<std::int32_t> hollowFaces; // theirs, with repetitions
 };
 
 // Of single cells: moments, closedness, aspect ratio, determinant, concavity, shape, edge

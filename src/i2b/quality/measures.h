@@ -10,6 +10,7 @@
 namespace i2b {
 
 inline constexpr double tinyDivisor = 1e-150;
+inline constexpr double planarCosine = 1e-6; // face centres nearer a face's plane than this make a cell concave
 
 // How far the line between the centres misses the face's centre, over the face's extent that way. The extent
 // is at least leastExtent, so that most faces can be seen not to reach least, and need no closer look: of
@@ -91,6 +92,23 @@ inline double cellDeterminant(const PolyMesh& mesh, std::span<const std::int32_t
     if (directions.count == 2) (directions.missing == 0 ? xx : directions.missing == 1 ? yy : zz) = 1;
     return std::abs(xx * yy * zz + xy * yz * xz + xz * xy * yz - xx * yz * yz - xy * xy * zz - xz * yy * xz) /
            8.0;
+}
+
+// Determinant of the sum of a a^T / |a| over all faces, each a its area, over that of a cube with as much surface: how
+// evenly the faces look to all sides. That of OpenFOAM's mesh quality dictionary, unlike the one above.
+inline double cellFullness(std::span<const FaceShape> shapes) {
+    double sum = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+    for (const FaceShape& shape : shapes) {
+        const Vec3& a = shape.area;
+        const double size = norm(a);
+        const Vec3 unit = (1.0 / (size + 1e-300)) * a;
+        sum += size;
+        xx += a.x * unit.x, xy += a.x * unit.y, xz += a.x * unit.z;
+        yy += a.y * unit.y, yz += a.y * unit.z, zz += a.z * unit.z;
+    }
+    const double det = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+    sum += 1e-300;
+    return det / (sum * sum * sum) / 0.037037037037037;
 }
 
 } // namespace i2b

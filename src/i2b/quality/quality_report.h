@@ -1,6 +1,7 @@
 // Quality of a PolyMesh in the measures OpenFOAM users know: what checkMesh -allTopology -allGeometry reports.
 #pragma once
 #include "i2b/assemble/poly_mesh.h"
+#include "i2b/quality/dictionary_limits.h"
 #include <array>
 #include <cstdint>
 #include <string>
@@ -24,6 +25,17 @@ struct QualityLimits {
     double smallVolume = 1e-300;     // m^3
     double faceArea = 1e-300;        // m^2
     double edgeAlignment = 1e-6;
+};
+
+// What is beyond a limit of the dictionary.
+struct DictionaryCheck {
+    std::string key;                 // in the dictionary, e.g. "maxNonOrtho"
+    double limit = 0;
+    bool asked = true;
+    std::int64_t faces = 0;          // beyond it, or of cells beyond it
+    std::int64_t newFaces = 0;       // of these, the ones that are within all limits listed before: what checkMesh prints
+    std::int64_t cells = 0;          // beyond a limit of cells
+    Vec3 worst;                      // m, where any are
 };
 
 // One named check: how many faces, cells or points fail it, and the worst place.
@@ -104,7 +116,11 @@ struct QualityReport {
     double minEdgeLength = 0, maxEdgeLength = 0, nearDistance = 0; // m
     std::int64_t shortEdgePoints = 0, concaveFaces = 0, warpedFaces = 0, flatnessFaces = 0;
     double maxConcaveAngle = 0;               // degrees
+    std::vector<DictionaryCheck> dictionary;  // in the order of checkMesh -meshQuality
+    std::int64_t dictionaryFaces = 0;         // beyond any of its limits
+    double minFullness = 0;                   // least determinant by all faces, the dictionary's
     QualityLimits limits;                     // those it was measured with
+    DictionaryLimits dictionaryLimits;
     std::vector<QualityCheck> checks;         // in checkMesh's order, those with a count only
     int failedChecks = 0;                     // checkMesh's "Failed n mesh checks."
     bool ok() const { return failedChecks == 0; }
@@ -113,7 +129,7 @@ struct QualityReport {
 // Definitions and tolerances are those of OpenFOAM v1912, and sums run in the order of the mesh, so that figures agree
 // with checkMesh's to the last digit printed. Coupled patches (cyclic, processor) are taken as plain boundary. Needs valid indices (what
 // PolyMesh::validate() says about ranges); anything else may be wrong with the mesh. Deterministic on any number of threads.
-QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits = {});
+QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits = {}, const DictionaryLimits& dictionary = {});
 
 // The report as text: what the mesh is made of, its patches, zones and regions, then a table of all checks (worst
 // and mean value, limit, how many are beyond it, verdict, place of the worst) in three groups, and in the last line

@@ -3,8 +3,10 @@
 #include "i2b/core/parallel.h"
 #include "i2b/write/foam_scan.h"
 #include <algorithm>
+#include <exception>
 #include <filesystem>
 #include <fmt/format.h>
+#include <functional>
 #include <optional>
 
 namespace i2b {
@@ -34,6 +36,18 @@ std::string requireFile(const fs::path& folder, const char* name) {
                 "an OpenFOAM mesh has points, faces, owner, neighbour and boundary");
 }
 
+template <class Test>
+bool allOf(Index n, const Test& test) {
+    return orderedReduce(
+        n, true,
+        [&](Index begin, Index end) {
+            bool all = true;
+            for (Index i = begin; i < end; ++i) all &= test(i);
+            return all;
+        },
+        [](bool a, bool b) { return a && b; }, 1 << 16);
+}
+
 std::vector<std::int32_t> readLabels(const std::string& path) {
     const MappedFile file(path);
     return FoamScanner(file).labels();
@@ -43,8 +57,7 @@ void readFaces(const std::string& path, PolyMesh& mesh) {
     const MappedFile file(path);
     FoamScanner scan(file);
     if (scan.header().type == "faceCompactList") {
-        const std::vector<std::int32_t> offsets = scan.labels();
-        mesh.faceOffsets.assign(offsets.begin(), offsets.end());
+        mesh.faceOffsets = scan.offsets();
         if (mesh.faceOffsets.empty()) mesh.faceOffsets.push_back(0);
         mesh.faceVertices = scan.labels();
     } else {
@@ -60,7 +73,7 @@ void readFaces(const std::string& path, PolyMesh& mesh) {
             mesh.faceOffsets.push_back(static_cast<std::uint32_t>(mesh.faceVertices.size()));
         }
     }
-    const bool ordered = std::is_sorted(mesh.faceOffsets.begin(), mesh.faceOffsets.end());
+    const bool ordered = allOf(mesh.faceOffsets.size() - 1, [&](Index f) { return mesh.faceOffsets[f] <= mesh.faceOffsets[f + 1]; });
     if (!ordered || mesh.faceOffsets.front() != 0 || mesh.faceOffsets.back() != mesh.faceVertices.size())
         scan.fail("the faces' offsets do not fit their vertices");
 }
@@ -132,6 +145,30 @@ std::vector<CellZone> readZones(const std::string& path) {
     return zones;
 }
 
+// All at once. Of several that fail the first one's complaint counts, whichever comes first by the clock.
+void inParallel(const std::vector<std::function<void()>>& tasks) {
+    std::vector<std::exception_ptr> failures(tasks.size());
+    parallelFor(
+        tasks.size(),
+        [&](Index i) {
+            try {
+                tasks[i]();
+            } catch (...) {
+                failures[i] = std::current_exception();
+            }
+        },
+        1);
+    for (const std::exception_ptr& failure : failures)
+        if (failure) std::rethrow_exception(failure);
+}
+
+std::int32_t highest(const std::vector<std::int32_t>& cells) { // -1 of none
+    return orderedReduce(
+        cells.size(), std::int32_t(-1),
+        [&](Index begin, Index end) { return std::max(-1, *std::max_element(cells.begin() + std::ptrdiff_t(begin), cells.begin() + std::ptrdiff_t(end))); },
+        [](std::int32_t a, std::int32_t b) { return std::max(a, b); }, 1 << 16);
+}
+
 // What the rest of the program relies on before it looks at anything else.
 void checkRanges(const PolyMesh& mesh, const std::string& folder) {
     const auto fail = [&](const std::string& what) {
@@ -143,12 +180,14 @@ void checkRanges(const PolyMesh& mesh, const std::string& folder) {
         fail(fmt::format("{} faces, but {} owners", mesh.faceOffsets.size() - 1, faces));
     if (mesh.neighbour.size() > faces)
         fail(fmt::format("{} neighbours for {} faces", mesh.neighbour.size(), faces));
-    for (Index f = 0; f < faces; ++f)
-        if (mesh.faceOffsets[f + 1] < mesh.faceOffsets[f] + 3)
-            fail(fmt::format("face {} has fewer than 3 vertices", f));
+    const auto hasCorners = [&](Index f) { return mesh.faceOffsets[f + 1] >= mesh.faceOffsets[f] + 3; };
+    if (!allOf(faces, hasCorners)) {
+        Index f = 0;
+        while (hasCorners(f)) ++f;
+        fail(fmt::format("face {} has fewer than 3 vertices", f));
+    }
     const auto inRange = [](const std::vector<std::int32_t>& values, Index limit) {
-        return std::all_of(values.begin(), values.end(),
-                           [&](std::int32_t v) { return v >= 0 && static_cast<Index>(v) < limit; });
+        return allOf(values.size(), [&](Index i) { return values[i] >= 0 && static_cast<Index>(values[i]) < limit; });
     };
     if (!inRange(mesh.faceVertices, mesh.points.size())) fail("a face uses a point that is not there");
     if (!inRange(mesh.owner, Index(mesh.cells)) || !inRange(mesh.neighbour, Index(mesh.cells)))
@@ -167,21 +206,21 @@ void checkRanges(const PolyMesh& mesh, const std::string& folder) {
 PolyMesh readFoam(const std::string& folder) {
     const fs::path path = meshFolder(folder);
     PolyMesh mesh;
-    {
-        const MappedFile file(requireFile(path, "points"));
-        mesh.points = FoamScanner(file).points();
-    }
-    readFaces(requireFile(path, "faces"), mesh);
-    mesh.owner = readLabels(requireFile(path, "owner"));
-    mesh.neighbour = readLabels(requireFile(path, "neighbour"));
+    const auto file = [&](const char* name) { return requireFile(path, name); };
+    inParallel({[&] {
+                    const MappedFile points(file("points"));
+                    mesh.points = FoamScanner(points).points();
+                },
+                [&] { readFaces(file("faces"), mesh); },
+                [&] { mesh.owner = readLabels(file("owner")); },
+                [&] { mesh.neighbour = readLabels(file("neighbour")); },
+                [&] { mesh.patches = readBoundary(file("boundary")); },
+                [&] {
+                    if (auto zones = findFile(path, "cellZones")) mesh.zones = readZones(*zones);
+                }});
     // Old versions write -1 for the boundary faces.
     while (!mesh.neighbour.empty() && mesh.neighbour.back() < 0) mesh.neighbour.pop_back();
-    std::int32_t last = -1;
-    for (const auto* labels : {&mesh.owner, &mesh.neighbour})
-        for (const std::int32_t c : *labels) last = std::max(last, c);
-    mesh.cells = last + 1;
-    mesh.patches = readBoundary(requireFile(path, "boundary"));
-    if (auto zones = findFile(path, "cellZones")) mesh.zones = readZones(*zones);
+    mesh.cells = std::max(highest(mesh.owner), highest(mesh.neighbour)) + 1;
     checkRanges(mesh, path.string());
     return mesh;
 }

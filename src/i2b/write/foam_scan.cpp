@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstring>
 #include <fmt/format.h>
+#include <iterator>
 #include <limits>
 
 namespace i2b {
@@ -17,6 +18,35 @@ T load(const char* from) {
     T value;
     std::memcpy(&value, from, sizeof value);
     return value;
+}
+
+// Values that lie one after another in the bytes of a file, wherever they start there: what is copied from it need not be
+// set to zero first.
+template <class T>
+class Packed {
+  public:
+    using iterator_category = std::random_access_iterator_tag;
+    using value_type = T;
+    using difference_type = std::ptrdiff_t;
+    using pointer = const T*;
+    using reference = T;
+
+    explicit Packed(const char* at) : at_(at) {}
+    T operator*() const { return load<T>(at_); }
+    Packed& operator++() { return at_ += sizeof(T), *this; }
+    Packed& operator--() { return at_ -= sizeof(T), *this; }
+    Packed operator+(difference_type n) const { return Packed(at_ + n * difference_type(sizeof(T))); }
+    Packed& operator+=(difference_type n) { return *this = *this + n; }
+    difference_type operator-(const Packed& o) const { return (at_ - o.at_) / difference_type(sizeof(T)); }
+    bool operator==(const Packed&) const = default;
+
+  private:
+    const char* at_;
+};
+
+template <class T>
+void append(std::vector<T>& to, std::string_view bytes) {
+    to.insert(to.end(), Packed<T>(bytes.data()), Packed<T>(bytes.data() + bytes.size()));
 }
 
 int sizeAfter(std::string_view arch, std::string_view key, int otherwise) {
@@ -83,6 +113,11 @@ std::string_view FoamScanner::peekSome() {
 }
 
 void FoamScanner::expect(std::string_view token) {
+    const std::size_t begin = pastSpace();
+    if (token.size() == 1 && begin < text_.size() && text_[begin] == token[0] && isPunctuation(token[0])) {
+        at_ = begin + 1;
+        return;
+    }
     const std::string_view found = peekSome();
     if (found != token) fail(fmt::format("'{}' expected, but found '{}'", token, found.substr(0, 20)));
     next();
@@ -106,7 +141,26 @@ void FoamScanner::readHeader() {
     expect("}");
 }
 
+// Lists of text are nearly all numbers between blanks and brackets: these are read in place. Everything else, comments and
+// faults among it, is left to the slow way.
+std::size_t FoamScanner::pastSpace() const {
+    std::size_t at = at_;
+    while (at < text_.size() && isSpace(text_[at])) ++at;
+    return at;
+}
+
+bool FoamScanner::endsAt(std::size_t at) const { return at < text_.size() && (isSpace(text_[at]) || isPunctuation(text_[at])); }
+
 std::int64_t FoamScanner::integer() {
+    constexpr std::size_t plainDigits = 12;
+    const std::size_t begin = pastSpace();
+    std::size_t at = begin;
+    std::int64_t plain = 0;
+    for (; at < text_.size() && text_[at] >= '0' && text_[at] <= '9' && at - begin < plainDigits; ++at) plain = plain * 10 + (text_[at] - '0');
+    if (at > begin && endsAt(at)) {
+        at_ = at;
+        return plain;
+    }
     const std::string_view token = peekSome();
     std::int64_t value = 0;
     const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
@@ -117,6 +171,13 @@ std::int64_t FoamScanner::integer() {
 }
 
 double FoamScanner::scalar() {
+    double plain = 0;
+    const char* const begin = text_.data() + pastSpace();
+    const auto [stop, fault] = std::from_chars(begin, text_.data() + text_.size(), plain);
+    if (fault == std::errc() && endsAt(static_cast<std::size_t>(stop - text_.data()))) {
+        at_ = static_cast<std::size_t>(stop - text_.data());
+        return plain;
+    }
     const std::string_view token = peekSome();
     double value = 0;
     const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
@@ -156,31 +217,38 @@ std::string_view FoamScanner::raw(std::size_t n, std::size_t size) {
     return bytes;
 }
 
-void FoamScanner::appendLabels(std::vector<std::int32_t>& to) {
+template <class Label>
+void FoamScanner::appendTo(std::vector<Label>& to) {
     const std::size_t n = count(header_.binary ? std::size_t(header_.labelBytes) : 2);
     const std::size_t start = to.size();
     if (peek() == "{") {
         next();
         if (header_.binary) fail("a list of equal labels in binary is not supported");
-        to.resize(start + n, checkedLabel(integer()));
+        to.resize(start + n, static_cast<Label>(checkedLabel(integer())));
         expect("}");
     } else if (header_.binary) {
         const auto size = static_cast<std::size_t>(header_.labelBytes);
         const std::string_view bytes = raw(n, size);
+        if (size == 4) return append(to, bytes);
         to.resize(start + n);
-        if (size == 4 && n > 0) {
-            std::memcpy(to.data() + start, bytes.data(), n * 4);
-        } else {
-            for (std::size_t i = 0; i < n; ++i)
-                to[start + i] = checkedLabel(load<std::int64_t>(bytes.data() + i * 8));
-        }
+        for (std::size_t i = 0; i < n; ++i)
+            to[start + i] = static_cast<Label>(checkedLabel(load<std::int64_t>(bytes.data() + i * 8)));
     } else {
         if (n == 0 && peek() != "(") return;
         expect("(");
         to.resize(start + n);
-        for (std::size_t i = 0; i < n; ++i) to[start + i] = checkedLabel(integer());
+        for (std::size_t i = 0; i < n; ++i) to[start + i] = static_cast<Label>(checkedLabel(integer()));
         expect(")");
     }
+}
+
+void FoamScanner::appendLabels(std::vector<std::int32_t>& to) { appendTo(to); }
+
+// Labels below 0 turn out far too large, and the caller finds them out of order.
+std::vector<std::uint32_t> FoamScanner::offsets() {
+    std::vector<std::uint32_t> result;
+    appendTo(result);
+    return result;
 }
 
 std::vector<std::int32_t> FoamScanner::labels() {
@@ -192,13 +260,14 @@ std::vector<std::int32_t> FoamScanner::labels() {
 std::vector<Vec3> FoamScanner::points() {
     const auto size = static_cast<std::size_t>(header_.scalarBytes);
     const std::size_t n = count(header_.binary ? 3 * size : 7);
-    std::vector<Vec3> result(n);
+    std::vector<Vec3> result;
     if (header_.binary) {
         const std::string_view bytes = raw(n, 3 * size);
         static_assert(sizeof(Vec3) == 3 * sizeof(double));
-        if (size == 8 && n > 0) {
-            std::memcpy(static_cast<void*>(result.data()), bytes.data(), bytes.size());
+        if (size == 8) {
+            append(result, bytes);
         } else {
+            result.resize(n);
             for (std::size_t i = 0; i < n; ++i)
                 for (int k = 0; k < 3; ++k)
                     result[i][k] = load<float>(bytes.data() + (3 * i + static_cast<std::size_t>(k)) * 4);
@@ -207,6 +276,7 @@ std::vector<Vec3> FoamScanner::points() {
     }
     if (n == 0 && peek() != "(") return result;
     expect("(");
+    result.resize(n);
     for (Vec3& p : result) {
         expect("(");
         p.x = scalar(), p.y = scalar(), p.z = scalar();

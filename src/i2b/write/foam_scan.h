@@ -27,6 +27,7 @@ class FoamScanner {
 
     std::vector<std::int32_t> labels();               // N(...) or N{value}
     void appendLabels(std::vector<std::int32_t>& to); // the same, at the end of a list
+    std::vector<std::uint32_t> offsets();             // labels, none below 0
     std::vector<Vec3> points();
 
     [[noreturn]] void fail(const std::string& what) const;
@@ -34,11 +35,15 @@ class FoamScanner {
   private:
     std::string_view peekSome(); // fails at the end of the file
     void skipSpace();
+    std::size_t pastSpace() const;      // where the next token begins, unless it is a comment
+    bool endsAt(std::size_t at) const;  // does a token end before there?
     void readHeader();
     double scalar();
     std::int32_t checkedLabel(std::int64_t value) const;
     std::string_view raw(std::size_t count, std::size_t size); // the bytes between ( and )
     std::size_t count(std::size_t leastBytesEach);
+    template <class Label>
+    void appendTo(std::vector<Label>& to);
 
     const MappedFile& file_;
     std::string_view text_;

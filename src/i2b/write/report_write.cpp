@@ -12,6 +12,17 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 
 Json place(const Vec3& p) { return Json::array({number(p.x), number(p.y), number(p.z)}); }
 
+// Under the names of OpenFOAM's mesh quality dictionary.
+Json limitsJson(const QualityReport& q) {
+    Json limits = Json::object();
+    for (const DictionaryCheck& check : q.dictionary) {
+        Json& entry = limits[check.key] = {{"limit", number(check.limit)}, {"asked", check.asked}, {"faces", check.faces}};
+        if (check.key == "minDeterminant") entry["cells"] = check.cells;
+        if (check.faces > 0) entry["worst"] = place(check.worst);
+    }
+    return limits;
+}
+
 Json qualityJson(const QualityReport& q) {
     return {{"ok", q.ok()},
             {"negative_volume_cells", q.negativeVolumeCells},
@@ -23,7 +34,9 @@ Json qualityJson(const QualityReport& q) {
             {"min_face_weight", number(q.minFaceWeight)},
             {"min_volume_ratio", number(q.minVolumeRatio)},
             {"min_determinant", number(q.minDeterminant)},
-            {"concave_cells", q.concaveCells}};
+            {"concave_cells", q.concaveCells},
+            {"faces_beyond_limits", q.dictionaryFaces},
+            {"limits", limitsJson(q)}};
 }
 
 Json fitJson(const FitReport& f) {
