@@ -22,8 +22,9 @@ class Optimiser {
     // Keeps references. faults: as the mesh is now; kept up to date.
     Optimiser(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults, Front& front, const LayerStack& layers, const WallGuide& guide);
 
-    // The nodes of poor and wrong cells, until nothing gets better. Gives how many moves were made.
-    std::int64_t mend(int sweeps);
+    // The nodes of poor and wrong cells, until nothing gets better. Gives how many moves were made. mayLeave: wall nodes
+    // need not stay on the geometry.
+    std::int64_t mend(int sweeps, bool mayLeave = false);
     // Nodes to the features that they should be on; those that get there are held to them.
     std::int64_t snapWished(int sweeps);
     // Wall nodes off the geometry, the whole, half or a quarter of their way, as far as no limit is broken.
@@ -53,6 +54,9 @@ class Optimiser {
     const Rows& cellFaces_;
     MeshFaults& faults_;
     Front& front_;
+    bool mayLeave_ = false;
+    bool thin_;           // are there layers of a height that was asked for?
+    int layers_;          // cells of the highest stack of thin layers, which share their faults; 1 where there are none
     WallGuide guide_;
     MeshNodes nodes_;
 };
