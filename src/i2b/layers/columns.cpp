@@ -92,7 +92,7 @@ std::vector<Column> fullyBent(const Front& front, const LayerStack& stack) {
     parallelFor(columns.size(), [&](Index v) {
         const Vec3& n = normals[v];
         const bool rises = dot(front.front[v] - front.wall(v), n) > leastRise * roomAt(front, v);
-        if (stack.pointsOf(v) > 1 && rises) columns[v] = {float(n.x), float(n.y), float(n.z), 1};
+        if (stack.pointsOf(v) > 1) columns[v] = {float(n.x), float(n.y), float(n.z), rises ? 1.0f : 0.0f};
     });
     return columns;
 }

@@ -19,6 +19,7 @@ constexpr int patience = 2;           // sweeps, then
 constexpr int thinPatience = 4;       // the same for thin layers, however many
 constexpr std::int64_t many = 200;    // faults of which more than
 constexpr double stalled = 0.9;       // this share is left by a sweep are given up
+constexpr std::array<float, 5> bends{1, 0.75f, 0.5f, 0.25f, 0}; // tried
 constexpr std::array<double, 5> stepLengths{0.25, 0.12, 0.06, 0.03, 0.015}; // of h
 
 // A move for the wall's sake keeps to the limits, or makes nothing worse where they are broken already.
@@ -65,8 +66,8 @@ struct Optimiser::Worker {
     std::vector<std::int32_t> points;
 };
 
-Optimiser::Optimiser(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults, Front& front, const LayerStack& layers, const WallGuide& guide)
-    : mesh_(mesh), cellFaces_(cellFaces), faults_(faults), front_(front), thin_(!layers.asHighAsCan()), layers_(thin_ ? layers.count : 1), guide_(guide), nodes_(front, layers) {}
+Optimiser::Optimiser(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults, Front& front, LayerStack& layers, const WallGuide& guide)
+    : mesh_(mesh), cellFaces_(cellFaces), faults_(faults), front_(front), stack_(layers), thin_(!layers.asHighAsCan()), layers_(thin_ ? layers.count : 1), guide_(guide), nodes_(front, layers) {}
 
 std::vector<Optimiser::Task> Optimiser::tasksOf(const std::vector<std::int32_t>& cells) const {
     std::vector<std::pair<MeshNode, std::int32_t>> found;
@@ -150,6 +151,36 @@ bool Optimiser::mendNode(const Task& task, Worker& worker) {
     if (!(least.sum < before.sum * (1 - leastGain))) best = from;
     worker.end(best);
     return !(best == from);
+}
+
+bool Optimiser::bendNode(const Task& task, Worker& worker) {
+    if (task.node.kind != MeshNode::wall) return false;
+    Column& column = stack_.columns[Index(task.node.id)];
+    if (column.normal() == Vec3{}) return false;
+    worker.begin(task);
+    const Badness before = worker.at(worker.from);
+    const float was = column.bend;
+    float best = was;
+    Badness least = before;
+    for (const float value : bends) {
+        column.bend = value;
+        const Badness b = worker.at(worker.from);
+        if (b.worst > before.worst || (b.invalid && !before.invalid) || !(b.sum < least.sum * (1 - leastGain))) continue;
+        least = b, best = value;
+    }
+    column.bend = best;
+    worker.end(worker.from);
+    return best != was;
+}
+
+std::int64_t Optimiser::bend() {
+    if (stack_.columns.empty()) return 0;
+    FaultCount count;
+    std::vector<std::int32_t> cells = faults_.badCells();
+    const std::vector<std::int32_t> poor = faults_.poorCells(count);
+    cells.insert(cells.end(), poor.begin(), poor.end());
+    std::vector<Task> tasks = tasksOf(cells);
+    return sweep(tasks, [&](const Task& t, Worker& w) { return bendNode(t, w); });
 }
 
 bool Optimiser::targetOf(std::int32_t vertex, Vec3& target) const {

@@ -16,6 +16,7 @@ constexpr double qualityStep = 0.2;
 constexpr int settleRounds = 3;
 constexpr std::int64_t manyFaults = 200;
 constexpr int mendSweeps = 12;
+constexpr int bendRounds = 3, thinPause = 4; // of columns bent anew, with sweeps between
 constexpr int thinSweeps = 24;    // of thin layers: all of a column move as one
 constexpr int wishSweeps = 2;
 constexpr int pullSweeps = 3;
@@ -296,7 +297,10 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, L
             const std::int64_t before = summary.moves;
             summary.moves += optimiser.mend(thin ? thinSweeps : mendSweeps);
             if (isClean()) return;
-            if (thin) { // whose columns a retreat makes no better: it takes whole regions off the wall
+            if (thin) {
+                for (int i = 0; i < bendRounds && optimiser.bend() > 0 && !isClean(); ++i) summary.moves += optimiser.mend(thinPause);
+                if (isClean()) return;
+                // A retreat makes columns no better: it takes whole regions off the wall.
                 summary.moves += optimiser.mend(mendSweeps, true);
                 if (isClean() || (summary.moves == before && faults.badCells().empty())) return;
             }
