@@ -34,6 +34,20 @@ TEST(SummaryText, NamesTheWorstPlaces) {
     EXPECT_THAT(summaryText(report), HasSubstr("\n1 place where the wall is over 0.01 h off: 1 node at (1.5 0 -2) on part0, up to 0.25 h, sheet_between\n"));
 }
 
+// Cells too thin for plain checkMesh: how many, where, and what would pass.
+TEST(SummaryText, SaysWhereLayersAreTooThin) {
+    RunReport report = sample();
+    QualityReport& q = report.quality.emplace();
+    EXPECT_THAT(summaryText(report), Not(HasSubstr("aspect ratio over")));
+    q.highAspectRatioCells = 7, q.maxAspectRatio = 2000;
+    q.checks.push_back({"highAspectRatioCells", 7, true, {1, 2, 3}, {}});
+    report.surfaceSize = 0.03;
+    report.layers.emplace();
+    report.layers->meanFirst = report.layers->minFirst = 2e-5;
+    EXPECT_THAT(summaryText(report), HasSubstr("\ncheckMesh reports 7 cells with an aspect ratio over 1000, up to 2000 at (1 2 3): layers of 2e-05 m "
+                                               "are that thin for cells of 0.03 m; a first layer of 4e-05 m or cells of 0.015 m there pass\n"));
+}
+
 // Nothing is said where there is nothing to say.
 TEST(SummaryText, SaysNothingOfAGoodWall) {
     RunReport report = sample();

@@ -378,13 +378,4 @@ PolyMesh Assembler::run() {
 
 PolyMesh assemble(const AssembleInput& input) { return Assembler(input).run(); }
 
-void placeLayers(const LayerStack& layers, std::size_t vertex, const Vec3& front, const Vec3& wall, Vec3* out) {
-    std::array<double, maxLayers + 1> heights;
-    const double room = norm(front - wall);
-    layers.heights(vertex, room, heights.data());
-    const auto n = static_cast<std::size_t>(layers.pointsOf(vertex));
-    for (std::size_t k = 0; k + 1 < n; ++k) out[k] = room > 0 ? wall + (front - wall) * (heights[k] / room) : wall;
-    out[n - 1] = wall;
-}
-
 } // namespace i2b

@@ -18,8 +18,4 @@ struct AssembleInput {
 // Throws Error(input) where the mesh has more than 2^31 labels.
 PolyMesh assemble(const AssembleInput& input);
 
-// The points of one front vertex' stack, from the front position to the wall position: layers.pointsOf(vertex) of them
-// into out, the last at the wall.
-void placeLayers(const LayerStack& layers, std::size_t vertex, const Vec3& front, const Vec3& wall, Vec3* out);
-
 } // namespace i2b

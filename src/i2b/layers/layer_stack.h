@@ -10,6 +10,7 @@
 #pragma once
 #include "i2b/front/front.h"
 #include "i2b/geometry/surface.h"
+#include "i2b/layers/columns.h"
 #include "i2b/layers/layer_plan.h"
 #include <cstdint>
 #include <string>
@@ -39,6 +40,8 @@ struct LayerStack {
     std::vector<std::uint16_t> facePlan, vertexPlan;
     // Where heights are in cell sizes; else empty:
     std::vector<float> cellSize;             // m, per vertex
+    // Per vertex; empty: all straight.
+    std::vector<Column> columns;
 
     bool uniform() const { return cellOffsets.empty(); }
     int cellsOf(std::size_t face) const { return uniform() ? count : static_cast<int>(cellOffsets[face + 1] - cellOffsets[face]); }
@@ -50,6 +53,7 @@ struct LayerStack {
     std::size_t cells() const { return cellOffset(faces); }
     std::size_t points() const { return pointOffset(vertices); }
     std::size_t vertexOfPoint(std::size_t point) const; // that has the point of this number among those of all
+    std::size_t faceOfCell(std::size_t cell) const;     // that has the cell of this number among those of all
 
     const LayerPlan& planOfFace(std::size_t face) const { return plans[facePlan.empty() ? 0 : facePlan[face]]; }
     const LayerPlan& planOfVertex(std::size_t vertex) const { return plans[vertexPlan.empty() ? 0 : vertexPlan[vertex]]; }
@@ -62,12 +66,17 @@ struct LayerStack {
     std::string validate(const Front& front) const;
 };
 
+// With straight columns: see bendColumns().
 LayerStack makeLayers(const Front& front, const WallPlans& plans);
 LayerStack makeLayers(const Front& front, const LayerOptions& options); // the same on all parts
 
 // Lowers counts, per face of the mesh, as little as it takes for those of faces that share an edge to differ by one at
 // most: each is then the least of count and distance over all faces, whatever the order they are visited in.
 void taperCounts(const FrontMesh& mesh, std::vector<std::uint8_t>& counts);
+
+// The points of one front vertex' stack, from the front position to the wall position: layers.pointsOf(vertex) of them
+// into out, the last at the wall. The one place that knows where they are, whatever becomes of the two positions.
+void placeLayers(const LayerStack& layers, std::size_t vertex, const Vec3& front, const Vec3& wall, Vec3* out);
 
 // m, from the front to the wall position of a vertex.
 double roomAt(const Front& front, std::size_t vertex);

@@ -134,11 +134,34 @@ std::size_t LayerStack::vertexOfPoint(std::size_t point) const {
     return static_cast<std::size_t>(std::upper_bound(pointOffsets.begin(), pointOffsets.end(), point) - pointOffsets.begin()) - 1;
 }
 
+std::size_t LayerStack::faceOfCell(std::size_t cell) const {
+    if (uniform()) return cell / static_cast<std::size_t>(count);
+    return static_cast<std::size_t>(std::upper_bound(cellOffsets.begin(), cellOffsets.end(), cell) - cellOffsets.begin()) - 1;
+}
+
 void LayerStack::heights(std::size_t vertex, double room, double* out) const {
     const int n = pointsOf(vertex);
     stackLevels(planOfVertex(vertex), room, cellSize.empty() ? 1.0 : static_cast<double>(cellSize[vertex]), n, out);
     std::reverse(out, out + n - 1);
     out[n - 1] = 0;
+}
+
+void placeLayers(const LayerStack& layers, std::size_t vertex, const Vec3& front, const Vec3& wall, Vec3* out) {
+    std::array<double, maxLayers + 1> heights;
+    const Vec3 way = front - wall;
+    const double room = norm(way);
+    const auto n = static_cast<std::size_t>(layers.pointsOf(vertex));
+    if (n > 1) {
+        layers.heights(vertex, room, heights.data());
+        const Column column = layers.columns.empty() ? Column() : layers.columns[vertex];
+        const Vec3 aside = column.bend > 0 ? (column.normal() * room - way) * double(column.bend) : Vec3{};
+        for (std::size_t k = 0; k + 1 < n; ++k) {
+            const double s = room > 0 ? heights[k] / room : 0;
+            out[k] = wall + way * s;
+            if (column.bend > 0) out[k] += aside * (s - s * s);
+        }
+    }
+    out[n - 1] = wall;
 }
 
 std::string LayerStack::validate(const Front& front) const {

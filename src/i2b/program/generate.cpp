@@ -11,6 +11,8 @@
 #include "i2b/grid/build.h"
 #include "i2b/grid/cut.h"
 #include "i2b/layers/layer_stack.h"
+#include "i2b/layers/side_angles.h"
+#include "i2b/layers/warp.h"
 #include "i2b/paint/paint.h"
 #include "i2b/paint/touched_parts.h"
 #include "i2b/quality/repair.h"
@@ -20,6 +22,8 @@
 
 namespace i2b {
 namespace {
+
+constexpr int mostCuts = 4; // rounds of cutting walls under cells that cannot be made valid
 
 // Runs one stage under its name; count(result) is the number of items it reports.
 template <class Body, class Count>
@@ -70,6 +74,31 @@ void judge(MeshResult& out, const FeatureGraph& features, const FitSummary& fitt
     Checksum sum;
     sum.add(out.mesh.checksum());
     out.report.checksum = sum.hex();
+}
+
+// Layers on a front that is made fit to carry them. moved: per vertex, whether its wall position was changed; or empty.
+LayerStack stackOn(Front& front, const WallPlans& plans, const SurfaceIndex& index, std::vector<std::uint8_t>& moved) {
+    LayerStack stack = makeLayers(front, plans);
+    if (!stack.asHighAsCan()) {
+        moved = steepenAtSides(front);
+        stack = makeLayers(front, plans);
+    }
+    bendColumns(front, stack);
+    if (cutWarped(front, stack, index) > 0) {
+        stack = makeLayers(front, plans);
+        bendColumns(front, stack);
+    }
+    return stack;
+}
+
+// Cuts the wall under layer cells that repair could not mend; false where none is left to be cut.
+bool cutUnderWrong(Front& front, LayerStack& stack, const WallPlans& plans, const SurfaceIndex& index, std::int32_t core, std::vector<std::int32_t> cells) {
+    std::erase_if(cells, [&](std::int32_t c) { return c < core; });
+    for (std::int32_t& c : cells) c -= core;
+    if (cutUnder(front, stack, index, cells) == 0) return false;
+    stack = makeLayers(front, plans);
+    bendColumns(front, stack);
+    return true;
 }
 
 } // namespace
@@ -153,14 +182,28 @@ MeshResult generate(const Options& options, Context& context) {
     assignParts(front, *c.index);
     const WallPlans plans = plansOf(options.layers, c.surface.parts);
     notes.insert(notes.end(), plans.notes.begin(), plans.notes.end());
+    std::vector<std::uint8_t> steepened;
     LayerStack layers = stage(
-        context, "layers", [&] { return makeLayers(front, plans); }, [](const LayerStack& l) { return l.cells(); });
+        context, "layers", [&] { return stackOn(front, plans, *c.index, steepened); }, [](const LayerStack& l) { return l.cells(); });
     out.mesh = stage(
         context, "assemble", [&] { return assemble({*lattice, c.kept, front, layers, c.surface.parts}); }, [](const PolyMesh& m) { return m.cells; });
-    const RepairSummary repaired = stage(
+    RepairSummary repaired = stage(
         context, "repair",
-        [&] { return repair(out.mesh, front, *lattice, layers, startThickness, {*c.index, FeatureIndex(features), fitted.snaps, fitted.wishes}); },
+        [&] {
+            const FeatureIndex lines(features);
+            const WallGuide guide{*c.index, lines, fitted.snaps, fitted.wishes};
+            RepairSummary r = repair(out.mesh, front, *lattice, layers, startThickness, guide);
+            for (int round = 0; r.remaining > 0 && round < mostCuts; ++round) {
+                std::vector<std::uint8_t> moved = std::move(r.movedWalls);
+                if (!cutUnderWrong(front, layers, plans, *c.index, static_cast<std::int32_t>(lattice->cellCount()), r.wrongCells)) break;
+                out.mesh = assemble({*lattice, c.kept, front, layers, c.surface.parts});
+                r = repair(out.mesh, front, *lattice, layers, startThickness, guide);
+                for (std::size_t v = 0; v < moved.size(); ++v) r.movedWalls[v] |= moved[v];
+            }
+            return r;
+        },
         [](const RepairSummary& r) { return r.retracted; });
+    for (std::size_t v = 0; v < steepened.size() && v < repaired.movedWalls.size(); ++v) repaired.movedWalls[v] |= steepened[v] != 0;
     if (repaired.remaining > 0) {
         throw Error(ErrorKind::internal, fmt::format("{} cells could not be made valid", repaired.remaining), "", "please report the case");
     }

@@ -45,6 +45,20 @@ std::string offGeometryLine(const OffPlaces& places) {
                        fmt::join(worst, "; "), places.total > static_cast<std::int64_t>(worst.size()) ? "; ..." : "");
 }
 
+// Layers much lower than they are wide fail a check of plain checkMesh, which no point can mend: says what would.
+std::string aspectLine(const RunReport& report) {
+    const QualityReport& q = *report.quality;
+    const QualityCheck* const check = findCheck(q, "highAspectRatioCells");
+    if (check == nullptr || q.highAspectRatioCells == 0) return "";
+    std::string text = fmt::format("checkMesh reports {} cells with an aspect ratio over {:g}, up to {:.0f} at ({:.4g} {:.4g} {:.4g})",
+                                   q.highAspectRatioCells, q.limits.aspectRatio, q.maxAspectRatio, check->worst.x, check->worst.y, check->worst.z);
+    const double excess = q.maxAspectRatio / q.limits.aspectRatio;
+    if (report.layers && report.layers->meanFirst > 0)
+        text += fmt::format(": layers of {:.3g} m are that thin for cells of {:.3g} m; a first layer of {:.2g} m or cells of {:.2g} m there pass",
+                            report.layers->minFirst, report.surfaceSize, report.layers->minFirst * excess, report.surfaceSize / excess);
+    return text + "\n";
+}
+
 } // namespace
 
 std::string fitText(const FitReport& fit) {
@@ -99,6 +113,7 @@ std::string summaryText(const RunReport& report) {
             "quality: {}; non-orthogonality {:.1f} at most, {:.1f} on average; skewness {:.2f}\n",
             q->ok() ? "all checks pass" : fmt::format("{} checks fail (see report.json)", q->failedChecks),
             q->maxNonOrthogonality, q->meanNonOrthogonality, q->maxSkewness);
+    if (report.quality) text += aspectLine(report);
     if (const auto& f = report.fit)
         text += fmt::format(
             "fit: {:.2f} % of the wall nodes on the geometry, {:.1f} % of the sharp edges captured\n",

@@ -8,7 +8,8 @@ namespace {
 
 using Index = std::size_t;
 constexpr double counts = 0.9;       // of a limit: what is better does not count
-constexpr double leastPyramid = 0.05; // cosine between a face's normal and the way to its centre from the cell's
+constexpr double leastPyramid = 0.05; // cosine between a face's normal and the way to its centre from the cell's; of thin
+                                      // cells three times the pyramid's volume over the cell's, half for each face of a box
 constexpr double flat = 1e-9;        // a pyramid below this cosine is wrong, as in mesh_faults.cpp
 constexpr double wrong = 30;         // of a cell inside out
 
@@ -81,7 +82,9 @@ void CellStar::judgeCell(Index i, Badness& out) {
         const double sign = mesh_.owner[Index(faces[k])] == cells_[i] ? 1 : -1, size = norm(row_[k].area) * norm(arm);
         const double cosine = size > 0 ? sign * dot(row_[k].area, arm) / size : -1;
         out.invalid = out.invalid || !(cosine > flat);
-        if (cosine < leastPyramid) add(out, 1 + (leastPyramid - cosine) / leastPyramid);
+        // Of thin cells the way to the centre of a face may be far longer sideways than across it.
+        const double pyramid = cells_[i] < thinFrom_ ? cosine : sign * dot(row_[k].area, arm) / std::max(m.volume, 1e-300);
+        if (pyramid < leastPyramid) add(out, std::min(wrong, 1 + (leastPyramid - pyramid) / leastPyramid));
     }
     if (cells_[i] >= thinFrom_) return;
     const double determinant = cellDeterminant(mesh_, faces, row_, Directions());

@@ -120,6 +120,8 @@ std::vector<std::int32_t> MeshFaults::badCells() const {
 std::vector<std::int32_t> MeshFaults::poorCells(FaultCount& faults, bool severeOnly) const {
     constexpr std::array<std::uint8_t, 4> ofFaces{nonOrthogonal, skew, lowWeight, lowRatio};
     constexpr Index severeKinds = 2;
+    // One poor column of thin layers has as many poor faces as layers: all are named.
+    const Index limit = thinFrom_ < mesh_.cells ? std::numeric_limits<Index>::max() : Tally::idLimit;
     std::array<Index, 4> found{};
     Index determinants = 0;
     std::vector<std::int32_t> cells;
@@ -127,13 +129,13 @@ std::vector<std::int32_t> MeshFaults::poorCells(FaultCount& faults, bool severeO
         if (faceFlags_[f] == 0) continue;
         bool named = false;
         for (Index k = 0; k < ofFaces.size(); ++k)
-            if (faceFlags_[f] & ofFaces[k]) named |= found[k]++ < Tally::idLimit && (k < severeKinds || !severeOnly);
+            if (faceFlags_[f] & ofFaces[k]) named |= found[k]++ < limit && (k < severeKinds || !severeOnly);
         if (!named) continue;
         cells.push_back(mesh_.owner[f]);
         if (f < mesh_.neighbour.size()) cells.push_back(mesh_.neighbour[f]);
     }
     for (Index c = 0; c < cellFlags_.size(); ++c)
-        if ((cellFlags_[c] & lowDeterminant) && determinants++ < Tally::idLimit && !severeOnly) cells.push_back(static_cast<std::int32_t>(c));
+        if ((cellFlags_[c] & lowDeterminant) && determinants++ < limit && !severeOnly) cells.push_back(static_cast<std::int32_t>(c));
     faults.severe = static_cast<std::int64_t>(found[0] + found[1]);
     faults.all = static_cast<std::int64_t>(determinants);
     for (const Index n : found) faults.all += static_cast<std::int64_t>(n);

@@ -16,8 +16,10 @@ constexpr double leastGain = 1e-3;    // of the sum: what a move must bring
 constexpr double leastEdge = 0.015;   // of h: no nearer may a node come to another for the wall's sake
 constexpr double nearLimit = 0.98;    // of a limit: a node on its way to the wall may bring its cells up to there
 constexpr int patience = 2;           // sweeps, then
+constexpr int thinPatience = 4;       // the same for thin layers, however many
 constexpr std::int64_t many = 200;    // faults of which more than
 constexpr double stalled = 0.9;       // this share is left by a sweep are given up
+constexpr std::array<float, 5> bends{1, 0.75f, 0.5f, 0.25f, 0}; // tried
 constexpr std::array<double, 5> stepLengths{0.25, 0.12, 0.06, 0.03, 0.015}; // of h
 
 // A move for the wall's sake keeps to the limits, or makes nothing worse where they are broken already.
@@ -64,8 +66,8 @@ struct Optimiser::Worker {
     std::vector<std::int32_t> points;
 };
 
-Optimiser::Optimiser(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults, Front& front, const LayerStack& layers, const WallGuide& guide)
-    : mesh_(mesh), cellFaces_(cellFaces), faults_(faults), front_(front), guide_(guide), nodes_(front, layers) {}
+Optimiser::Optimiser(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults, Front& front, LayerStack& layers, const WallGuide& guide)
+    : mesh_(mesh), cellFaces_(cellFaces), faults_(faults), front_(front), stack_(layers), thin_(!layers.asHighAsCan()), layers_(thin_ ? layers.count : 1), guide_(guide), nodes_(front, layers) {}
 
 std::vector<Optimiser::Task> Optimiser::tasksOf(const std::vector<std::int32_t>& cells) const {
     std::vector<std::pair<MeshNode, std::int32_t>> found;
@@ -108,7 +110,7 @@ bool Optimiser::isFree(const MeshNode& node, const Vec3& to) const {
 
 // Wall nodes that are on the geometry stay on it, on the feature that they are held to.
 Vec3 Optimiser::onWall(const MeshNode& node, const Vec3& from, const Vec3& to) const {
-    if (node.kind != MeshNode::wall) return to;
+    if (node.kind != MeshNode::wall || mayLeave_ || front_.outside[Index(node.id)] != 0) return to;
     const double h = front_.h[Index(node.id)];
     if (Index(node.id) < guide_.snaps.size() && guide_.snaps[Index(node.id)].kind != SnapKind::none) {
         const FeatureIndex::Line was = snapLine(guide_.index, guide_.features, guide_.snaps[Index(node.id)], from, h);
@@ -122,7 +124,8 @@ Vec3 Optimiser::onWall(const MeshNode& node, const Vec3& from, const Vec3& to) c
 
 bool Optimiser::mendNode(const Task& task, Worker& worker) {
     const std::uint8_t outside = nodes_.outside(task.node);
-    if (task.node.kind == MeshNode::wall && outside != 0) return false;
+    // Where the wall meets a side of the domain at a sharp angle thin layers are skew: there its nodes may leave it.
+    if (task.node.kind == MeshNode::wall && outside != 0 && !thin_) return false;
     worker.begin(task);
     const Vec3 from = worker.from;
     const Badness before = worker.at(from);
@@ -148,6 +151,36 @@ bool Optimiser::mendNode(const Task& task, Worker& worker) {
     if (!(least.sum < before.sum * (1 - leastGain))) best = from;
     worker.end(best);
     return !(best == from);
+}
+
+bool Optimiser::bendNode(const Task& task, Worker& worker) {
+    if (task.node.kind != MeshNode::wall) return false;
+    Column& column = stack_.columns[Index(task.node.id)];
+    if (column.normal() == Vec3{}) return false;
+    worker.begin(task);
+    const Badness before = worker.at(worker.from);
+    const float was = column.bend;
+    float best = was;
+    Badness least = before;
+    for (const float value : bends) {
+        column.bend = value;
+        const Badness b = worker.at(worker.from);
+        if (b.worst > before.worst || (b.invalid && !before.invalid) || !(b.sum < least.sum * (1 - leastGain))) continue;
+        least = b, best = value;
+    }
+    column.bend = best;
+    worker.end(worker.from);
+    return best != was;
+}
+
+std::int64_t Optimiser::bend() {
+    if (stack_.columns.empty()) return 0;
+    FaultCount count;
+    std::vector<std::int32_t> cells = faults_.badCells();
+    const std::vector<std::int32_t> poor = faults_.poorCells(count);
+    cells.insert(cells.end(), poor.begin(), poor.end());
+    std::vector<Task> tasks = tasksOf(cells);
+    return sweep(tasks, [&](const Task& t, Worker& w) { return bendNode(t, w); });
 }
 
 bool Optimiser::targetOf(std::int32_t vertex, Vec3& target) const {
@@ -251,13 +284,18 @@ std::int64_t Optimiser::sweep(std::vector<Task>& tasks, const Move& move) {
     return moves;
 }
 
-std::int64_t Optimiser::mend(int sweeps) {
-    std::int64_t moves = 0, before = 0;
+std::int64_t Optimiser::mend(int sweeps, bool mayLeave) {
+    mayLeave_ = mayLeave;
+    std::int64_t moves = 0, before = 0, patientFrom = 0;
     for (int i = 0; i < sweeps; ++i) {
         FaultCount count;
         std::vector<std::int32_t> cells = faults_.badCells();
         const std::vector<std::int32_t> poor = faults_.poorCells(count);
-        if (i >= patience && count.all > many && static_cast<double>(count.all) > stalled * static_cast<double>(before)) break;
+        if (i >= patience && count.all > many * layers_ && static_cast<double>(count.all) > stalled * static_cast<double>(before)) break;
+        if (thin_ && i % thinPatience == 0) {
+            if (i > 0 && count.all > 0 && static_cast<double>(count.all) > stalled * static_cast<double>(patientFrom) && cells.empty()) break;
+            patientFrom = count.all;
+        }
         before = count.all;
         cells.insert(cells.end(), poor.begin(), poor.end());
         std::vector<Task> tasks = tasksOf(cells);

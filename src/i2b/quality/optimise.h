@@ -20,10 +20,13 @@ struct WallGuide {
 class Optimiser {
   public:
     // Keeps references. faults: as the mesh is now; kept up to date.
-    Optimiser(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults, Front& front, const LayerStack& layers, const WallGuide& guide);
+    Optimiser(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults, Front& front, LayerStack& layers, const WallGuide& guide);
 
-    // The nodes of poor and wrong cells, until nothing gets better. Gives how many moves were made.
-    std::int64_t mend(int sweeps);
+    // The nodes of poor and wrong cells, until nothing gets better. Gives how many moves were made. mayLeave: wall nodes
+    // need not stay on the geometry.
+    std::int64_t mend(int sweeps, bool mayLeave = false);
+    // Columns of poor and wrong cells more or less bent.
+    std::int64_t bend();
     // Nodes to the features that they should be on; those that get there are held to them.
     std::int64_t snapWished(int sweeps);
     // Wall nodes off the geometry, the whole, half or a quarter of their way, as far as no limit is broken.
@@ -44,6 +47,7 @@ class Optimiser {
     bool isFree(const MeshNode& node, const Vec3& to) const;
     Vec3 onWall(const MeshNode& node, const Vec3& from, const Vec3& to) const;
     bool targetOf(std::int32_t vertex, Vec3& target) const;
+    bool bendNode(const Task& task, Worker& worker);
     bool mendNode(const Task& task, Worker& worker);
     bool pullNode(const Task& task, Worker& worker);
     bool snapNode(const Task& task, Worker& worker);
@@ -53,6 +57,10 @@ class Optimiser {
     const Rows& cellFaces_;
     MeshFaults& faults_;
     Front& front_;
+    LayerStack& stack_;
+    bool mayLeave_ = false;
+    bool thin_;           // are there layers of a height that was asked for?
+    int layers_;          // cells of the highest stack of thin layers, which share their faults; 1 where there are none
     WallGuide guide_;
     MeshNodes nodes_;
 };

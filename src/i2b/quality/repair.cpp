@@ -16,6 +16,8 @@ constexpr double qualityStep = 0.2;
 constexpr int settleRounds = 3;
 constexpr std::int64_t manyFaults = 200;
 constexpr int mendSweeps = 12;
+constexpr int bendRounds = 3, thinPause = 4; // of columns bent anew, with sweeps between
+constexpr int thinSweeps = 24;    // of thin layers: all of a column move as one
 constexpr int wishSweeps = 2;
 constexpr int pullSweeps = 3;
 
@@ -39,7 +41,7 @@ struct Path {
 // way that it has gone; a way only where it has moved.
 class Nodes {
   public:
-    Nodes(const Front& front, const LatticeMesh& lattice, const LayerStack& layers, double thickness)
+    Nodes(const Front& front, const LatticeMesh& lattice, LayerStack& layers, double thickness)
         : front_(front), layers_(layers), core_(static_cast<std::size_t>(front.corePoints) + front.inserted.size()) {
         const std::vector<Vec3> start = lattice.latticePoints();
         const auto startOf = [&](std::int32_t point) { return start[static_cast<std::size_t>(point)]; };
@@ -58,6 +60,7 @@ class Nodes {
         }
         beta.assign(core_ + fans, 1.0f);
         touched_.assign(beta.size(), 0);
+        for (const Column& c : layers.columns) bend_.push_back(c.bend);
     }
     // Of a mesh point; the points of a layer belong to the fan.
     std::size_t of(std::int32_t point) const {
@@ -72,6 +75,8 @@ class Nodes {
         if (beta[n] == value) return;
         beta[n] = value;
         touched_[n] = 1;
+        // The wall's normals are those of the fit: at the start columns are straight.
+        if (n >= core_ && !bend_.empty()) layers_.columns[n - core_].bend = bend_[n - core_] * value;
     }
     // Puts the mesh points of all nodes set since the last time where they belong; gives their numbers.
     std::vector<std::int32_t> place(std::vector<Vec3>& points);
@@ -94,11 +99,12 @@ class Nodes {
     }
 
     const Front& front_;
-    const LayerStack& layers_;
+    LayerStack& layers_;
     std::size_t core_;
     std::vector<Path> behind_;             // as front.movedPoints
     std::vector<Path> ahead_;              // per fan that the lattice has
     std::vector<Path> wall_;               // per fan
+    std::vector<float> bend_;              // per fan, of its column at the end of the fit; empty: all straight
     std::vector<std::uint8_t> touched_;    // per node
 };
 
@@ -216,8 +222,8 @@ void Retreat::restore(const std::vector<float>& beta) {
 
 namespace {
 
-// Steps back until nothing is wrong, then for quality as long as it helps.
-void retreatFromFaults(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults, Nodes& nodes, RepairSummary& summary) {
+// Steps back until nothing is wrong, then, if asked to, for quality as long as it helps.
+void retreatFromFaults(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults, Nodes& nodes, bool forQuality, RepairSummary& summary) {
     Retreat retreat(mesh, cellFaces, faults, nodes);
     std::vector<std::int32_t> bad = faults.badCells();
     const auto makeValid = [&] {
@@ -238,6 +244,7 @@ void retreatFromFaults(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults
     // The best state counts. Severe faults first: what mends them may leave layers thin beside a large cell, which is the
     // lesser evil.
     for (const bool severeOnly : {true, false}) {
+        if (!forQuality) break;
         FaultCount count;
         std::vector<std::int32_t> poor = faults.poorCells(count, severeOnly);
         for (int round = 0; !poor.empty() && bad.empty() && round < qualityRounds; ++round, ++summary.rounds) {
@@ -252,6 +259,7 @@ void retreatFromFaults(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults
         returnToBest();
     }
     summary.remaining = static_cast<std::int64_t>(bad.size());
+    summary.wrongCells = std::move(bad);
 }
 
 std::vector<Vec3> wallPositions(const Front& front) {
@@ -262,12 +270,13 @@ std::vector<Vec3> wallPositions(const Front& front) {
 
 } // namespace
 
-RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, const LayerStack& layers, double startThickness,
+RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, LayerStack& layers, double startThickness,
                      const WallGuide& guide) {
     RepairSummary summary;
     const Rows cellFaces = buildCellFaces(mesh);
     // Layers of a height that was asked for are thin on purpose: nodes off the wall would not mend them.
-    const std::int32_t thinFrom = layers.asHighAsCan() ? mesh.cells : mesh.cells - static_cast<std::int32_t>(layers.cells());
+    const bool thin = !layers.asHighAsCan();
+    const std::int32_t thinFrom = !thin ? mesh.cells : mesh.cells - static_cast<std::int32_t>(layers.cells());
     MeshFaults faults(mesh, cellFaces, strictLimits(), thinFrom);
     FaultCount poor;
     faults.poorCells(poor);
@@ -285,23 +294,36 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, c
         std::int64_t goOnBelow = any; // many faults that stay are given up
         for (int round = 0; round < settleRounds && !isClean() && (poor.all < goOnBelow || !faults.badCells().empty()); ++round) {
             goOnBelow = poor.all > manyFaults ? poor.all / 2 : any;
-            summary.moves += optimiser.mend(mendSweeps);
+            const std::int64_t before = summary.moves;
+            summary.moves += optimiser.mend(thin ? thinSweeps : mendSweeps);
             if (isClean()) return;
+            if (thin) {
+                for (int i = 0; i < bendRounds && optimiser.bend() > 0 && !isClean(); ++i) summary.moves += optimiser.mend(thinPause);
+                if (isClean()) return;
+                // A retreat makes columns no better: it takes whole regions off the wall.
+                summary.moves += optimiser.mend(mendSweeps, true);
+                if (isClean() || (summary.moves == before && faults.badCells().empty())) return;
+            }
             Nodes nodes(front, lattice, layers, startThickness);
-            retreatFromFaults(mesh, cellFaces, faults, nodes, summary);
+            retreatFromFaults(mesh, cellFaces, faults, nodes, !thin, summary);
             nodes.store(front);
             for (float beta : nodes.beta) summary.retracted += beta < 1;
         }
     };
     settle();
-    if (summary.remaining > 0) return summary;
+    const auto noteMoved = [&] {
+        for (std::size_t v = 0; v < walls.size(); ++v) summary.movedWalls.push_back(!(front.wall(v) == walls[v]));
+    };
+    if (summary.remaining > 0) {
+        noteMoved();
+        return summary;
+    }
     summary.moves += optimiser.snapWished(wishSweeps);
     summary.moves += optimiser.pullIn(pullSweeps);
     settle();
     isClean();
     summary.poorRemaining = poor.all;
-    const std::vector<Vec3> after = wallPositions(front);
-    for (std::size_t v = 0; v < after.size(); ++v) summary.movedWalls.push_back(!(after[v] == walls[v]));
+    noteMoved();
     return summary;
 }
 

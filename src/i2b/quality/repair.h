@@ -17,15 +17,17 @@ struct RepairSummary {
     std::int64_t moves = 0;      // of single nodes to better places
     std::int64_t badCells = 0;   // at the beginning
     std::int64_t retracted = 0;  // points that stepped back
-    std::int64_t remaining = 0;  // bad cells at the end; 0 unless the start itself is wrong
+    std::int64_t remaining = 0;  // bad cells at the end; 0 unless the start itself is wrong: thin layers over warped faces
+    std::vector<std::int32_t> wrongCells;  // these
     std::int64_t poorFaces = 0;  // faces over the limits of non-orthogonality, skewness, weight or volume ratio at the
                                  // beginning, and cells of small determinant
     std::int64_t poorRemaining = 0;
     std::vector<std::uint8_t> movedWalls; // per vertex of the front: its wall position was changed
 };
 
-// startThickness: what buildFront() was given. Moves points of mesh, and front positions alike.
-RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, const LayerStack& layers, double startThickness,
+// startThickness: what buildFront() was given. Moves points of mesh, and front positions alike; columns of layers whose
+// wall position steps back lose their bend with it.
+RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, LayerStack& layers, double startThickness,
                      const WallGuide& guide);
 
 } // namespace i2b

@@ -1,0 +1,139 @@
+#include "i2b/layers/columns.h"
+#include "i2b/core/parallel.h"
+#include "i2b/layers/layer_stack.h"
+#include "i2b/layers/wall_normals.h"
+#include <algorithm>
+#include <array>
+
+namespace i2b {
+namespace {
+
+using Index = std::size_t;
+constexpr float leastBend = 0.2f;       // below it a bend is none
+constexpr double leastRise = 0.2;       // cosine between a column as a whole and the normal
+constexpr double goodCorner = 0.75;     // cosine between an edge off the wall and the corner it stands on: no lean to speak of
+constexpr double innermost = 0.4;       // the share of a straight one's cosine that the innermost cell may come down to
+constexpr double flatCorner = 0.03;     // sine: of a hanging vertex
+constexpr Index mostVertices = 16;      // of a face
+
+FrontMesh::FaceHandle faceAt(Index f) { return FrontMesh::FaceHandle(static_cast<int>(f)); }
+FrontMesh::VertexHandle vertexAt(Index v) { return FrontMesh::VertexHandle(static_cast<int>(v)); }
+
+// The worst cosines between an edge off the wall and the normal of a corner that it stands on.
+struct Upright {
+    double layers = 1, innermost = 1;
+};
+
+// One face' stack of prisms, for looking at with columns bent and straight.
+class Prisms {
+  public:
+    Prisms(const Front& front, const LayerStack& stack) : front_(front), stack_(stack) {}
+
+    void take(Index face) {
+        n_ = 0;
+        cells_ = stack_.cellsOf(face);
+        for (auto v : front_.mesh.fv_range(faceAt(face))) {
+            if (n_ < mostVertices) vertices_[n_++] = static_cast<Index>(v.idx());
+        }
+    }
+    // levels of each vertex: 0 at the wall, cells_ at the front.
+    Upright look(const LayerStack& stack) {
+        const auto levels = static_cast<Index>(cells_) + 1;
+        points_.resize(n_ * levels);
+        for (Index i = 0; i < n_; ++i) {
+            std::array<Vec3, maxLayers + 1> column;
+            const Index v = vertices_[i];
+            placeLayers(stack, v, front_.front[v], front_.wall(v), column.data());
+            const auto points = static_cast<Index>(stack.pointsOf(v));
+            for (Index k = 0; k + 1 < levels; ++k) points_[k * n_ + i] = column[points - 1 - k];
+            points_[(levels - 1) * n_ + i] = front_.front[v];
+        }
+        Upright seen;
+        for (Index k = 0; k + 1 < levels; ++k) {
+            double& worst = k + 2 == levels ? seen.innermost : seen.layers;
+            worst = std::min(worst, worstCorner(&points_[k * n_], &points_[(k + 1) * n_]));
+        }
+        return seen;
+    }
+
+  private:
+    double worstCorner(const Vec3* low, const Vec3* high) const {
+        double worst = 1;
+        for (Index i = 0; i < n_; ++i) {
+            const Index next = i + 1 == n_ ? 0 : i + 1, before = i == 0 ? n_ - 1 : i - 1;
+            const Vec3 up = high[i] - low[i];
+            for (const Vec3* level : {low, high}) {
+                const Vec3 a = level[before] - level[i], b = level[next] - level[i], normal = cross(a, b);
+                const double size = norm(normal);
+                if (size < flatCorner * norm(a) * norm(b)) continue;
+                worst = std::min(worst, dot(normal, up) / (size * norm(up)));
+            }
+        }
+        return worst;
+    }
+
+    const Front& front_;
+    const LayerStack& stack_;
+    int cells_ = 0;
+    Index n_ = 0;
+    std::array<Index, mostVertices> vertices_{};
+    std::vector<Vec3> points_;
+};
+
+bool mayStand(const Upright& bent, const Upright& straight) {
+    if (!(bent.layers > 0 || bent.layers >= straight.layers)) return false;
+    if (!(bent.innermost > 0 || bent.innermost >= straight.innermost)) return false;
+    return bent.layers >= std::min(straight.layers, goodCorner) && bent.innermost >= std::min(innermost * straight.innermost, goodCorner);
+}
+
+std::vector<Column> fullyBent(const Front& front, const LayerStack& stack) {
+    const std::vector<Vec3> normals = wallNormals(front);
+    std::vector<Column> columns(normals.size());
+    parallelFor(columns.size(), [&](Index v) {
+        const Vec3& n = normals[v];
+        const bool rises = dot(front.front[v] - front.wall(v), n) > leastRise * roomAt(front, v);
+        if (stack.pointsOf(v) > 1) columns[v] = {float(n.x), float(n.y), float(n.z), rises ? 1.0f : 0.0f};
+    });
+    return columns;
+}
+
+} // namespace
+
+// In rounds: faces whose stack cannot stand halve the bends of their vertices, all at once, and are looked at again with
+// those around them.
+void bendColumns(const Front& front, LayerStack& stack) {
+    if (stack.count == 1 && stack.uniform()) return;
+    LayerStack straight = stack;
+    stack.columns = fullyBent(front, stack);
+    std::vector<std::uint8_t> looks(stack.faces, 1), fails(stack.faces, 0);
+    for (bool again = true; again;) {
+        parallelChunks(stack.faces, 256, [&](Index begin, Index end, Index) {
+            Prisms prisms(front, stack);
+            for (Index f = begin; f < end; ++f) {
+                fails[f] = 0;
+                if (!looks[f] || stack.cellsOf(f) < 2) continue;
+                const auto around = front.mesh.fv_range(faceAt(f));
+                const bool bends = std::any_of(around.begin(), around.end(), [&](auto v) { return stack.columns[Index(v.idx())].bend > 0; });
+                if (!bends) continue;
+                prisms.take(f);
+                fails[f] = !mayStand(prisms.look(stack), prisms.look(straight));
+            }
+        });
+        again = std::find(fails.begin(), fails.end(), 1) != fails.end();
+        if (!again) break;
+        std::vector<std::uint8_t> lowered(stack.vertices, 0);
+        parallelFor(stack.vertices, [&](Index v) {
+            float& bend = stack.columns[v].bend;
+            const auto around = front.mesh.vf_range(vertexAt(v));
+            if (bend == 0 || std::none_of(around.begin(), around.end(), [&](auto f) { return fails[Index(f.idx())] != 0; })) return;
+            bend = bend * 0.5f < leastBend ? 0 : bend * 0.5f;
+            lowered[v] = 1;
+        });
+        parallelFor(stack.faces, [&](Index f) {
+            const auto around = front.mesh.fv_range(faceAt(f));
+            looks[f] = std::any_of(around.begin(), around.end(), [&](auto v) { return lowered[Index(v.idx())] != 0; });
+        });
+    }
+}
+
+} // namespace i2b
