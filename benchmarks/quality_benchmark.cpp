@@ -226,12 +226,13 @@ void optimise(benchmark::State& state) {
         state.PauseTiming();
         PolyMesh mesh = run.mesh;
         Front front = run.front;
+        LayerStack layers = run.layers;
         std::vector<Snap> snaps = run.fitted.snaps;
-        nodes = disturb(mesh, front, run.layers, snaps, 0.3);
+        nodes = disturb(mesh, front, layers, snaps, 0.3);
         state.ResumeTiming();
         MeshFaults faults(mesh, cellFaces, limits);
         faults.poorCells(before);
-        Optimiser optimiser(mesh, cellFaces, faults, front, run.layers, {*run.painted.index, run.features, snaps, wishes});
+        Optimiser optimiser(mesh, cellFaces, faults, front, layers, {*run.painted.index, run.features, snaps, wishes});
         moves += optimiser.mend(12) + optimiser.pullIn(3);
         faults.poorCells(after);
     }

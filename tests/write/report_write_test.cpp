@@ -28,7 +28,7 @@ RunReport sample() {
     r.cells = 10;
     r.quality.emplace();
     r.quality->maxSkewness = 1.25;
-    r.quality->dictionary = {{.key = "maxNonOrtho", .limit = 65}, {.key = "minDeterminant", .limit = 0.001, .faces = 6, .cells = 1}};
+    r.quality->dictionary = {{"maxNonOrtho", 65, true, 0, 0, 0, {}}, {"minDeterminant", 0.001, true, 6, 0, 1, {}}};
     r.quality->dictionaryFaces = 6;
     r.fit.emplace();
     r.fitCutShort = true;
