@@ -29,10 +29,23 @@ Room::Room(const CellGrid& grid, const CutCells& cut, const Regions& regions, co
     : grid_(grid), kept_(kept), taken_(taken), index_(index), options_(options), painted_(regions.cellsOf(region.id)),
       candidates_(candidatesOf(grid, cut, regions, painted_, kept, options.pocketCells)) {}
 
+// By a face, an edge or a corner, whatever the level of the other cell.
 bool Room::touchesTaken(const Place& c) const {
-    if (taken_.empty()) return false;
-    for (int i = 0; i < 27; ++i) {
-        if (isOn(taken_, {c.level, {c.at[0] + i % 3 - 1, c.at[1] + i / 3 % 3 - 1, c.at[2] + i / 9 - 1}})) return true;
+    const LevelTriple& own = grid_.levels[std::size_t(c.level)].level;
+    const int finest = grid_.lattice.maxLevel;
+    for (std::size_t l = 0; l < taken_.size(); ++l) {
+        const LevelTriple& level = grid_.levels[l].level;
+        Index3 first{}, last{};
+        for (std::size_t axis = 0; axis < 3; ++axis) { // closed intervals of the finest lattice meet
+            const int shift = finest - level[axis], ownShift = finest - own[axis];
+            const std::int64_t low = std::int64_t(c.at[axis]) << ownShift, high = std::int64_t(c.at[axis] + 1) << ownShift;
+            first[axis] = static_cast<std::int32_t>((low + (std::int64_t(1) << shift) - 1) >> shift) - 1;
+            last[axis] = static_cast<std::int32_t>(high >> shift);
+        }
+        for (Index3 at = first; at[0] <= last[0]; ++at[0])
+            for (at[1] = first[1]; at[1] <= last[1]; ++at[1])
+                for (at[2] = first[2]; at[2] <= last[2]; ++at[2])
+                    if (isOn(taken_, {static_cast<std::int32_t>(l), at})) return true;
     }
     return false;
 }
