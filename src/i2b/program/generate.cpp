@@ -10,9 +10,7 @@
 #include "i2b/geometry/rims.h"
 #include "i2b/grid/build.h"
 #include "i2b/grid/cut.h"
-#include "i2b/layers/layer_stack.h"
-#include "i2b/layers/side_angles.h"
-#include "i2b/layers/warp.h"
+#include "i2b/layers/lay_on.h"
 #include "i2b/paint/paint.h"
 #include "i2b/paint/touched_parts.h"
 #include "i2b/quality/repair.h"
@@ -76,29 +74,27 @@ void judge(MeshResult& out, const FeatureGraph& features, const FitSummary& fitt
     out.report.checksum = sum.hex();
 }
 
-// Layers on a front that is made fit to carry them. moved: per vertex, whether its wall position was changed; or empty.
-LayerStack stackOn(Front& front, const WallPlans& plans, const SurfaceIndex& index, std::vector<std::uint8_t>& moved) {
-    LayerStack stack = makeLayers(front, plans);
-    if (!stack.asHighAsCan()) {
-        moved = steepenAtSides(front);
-        stack = makeLayers(front, plans);
-    }
-    bendColumns(front, stack);
-    if (cutWarped(front, stack, index) > 0) {
-        stack = makeLayers(front, plans);
-        bendColumns(front, stack);
-    }
-    return stack;
-}
-
-// Cuts the wall under layer cells that repair could not mend; false where none is left to be cut.
-bool cutUnderWrong(Front& front, LayerStack& stack, const WallPlans& plans, const SurfaceIndex& index, std::int32_t core, std::vector<std::int32_t> cells) {
-    std::erase_if(cells, [&](std::int32_t c) { return c < core; });
-    for (std::int32_t& c : cells) c -= core;
-    if (cutUnder(front, stack, index, cells) == 0) return false;
-    stack = makeLayers(front, plans);
-    bendColumns(front, stack);
-    return true;
+// Assembles and repairs; where layer cells cannot be made valid the wall under them is cut and all is done again.
+RepairSummary assembleAndRepair(MeshResult& out, const LatticeMesh& lattice, Front& front, LayerStack& layers, const WallPlans& plans, const WallGuide& guide,
+                                Context& context) {
+    const GridResult& c = *out.cartesian;
+    const AssembleInput parts{lattice, c.kept, front, layers, c.surface.parts};
+    out.mesh = stage(
+        context, "assemble", [&] { return assemble(parts); }, [](const PolyMesh& m) { return m.cells; });
+    return stage(
+        context, "repair",
+        [&] {
+            RepairSummary r = repair(out.mesh, front, lattice, layers, startThickness, guide);
+            for (int round = 0; r.remaining > 0 && round < mostCuts; ++round) {
+                const std::vector<std::uint8_t> moved = std::move(r.movedWalls);
+                if (!cutUnderWrong(front, layers, plans, *c.index, static_cast<std::int32_t>(lattice.cellCount()), r.wrongCells)) break;
+                out.mesh = assemble(parts);
+                r = repair(out.mesh, front, lattice, layers, startThickness, guide);
+                for (std::size_t v = 0; v < moved.size(); ++v) r.movedWalls[v] |= moved[v];
+            }
+            return r;
+        },
+        [](const RepairSummary& r) { return r.retracted; });
 }
 
 } // namespace
@@ -182,31 +178,15 @@ MeshResult generate(const Options& options, Context& context) {
     assignParts(front, *c.index);
     const WallPlans plans = plansOf(options.layers, c.surface.parts);
     notes.insert(notes.end(), plans.notes.begin(), plans.notes.end());
-    std::vector<std::uint8_t> steepened;
-    LayerStack layers = stage(
-        context, "layers", [&] { return stackOn(front, plans, *c.index, steepened); }, [](const LayerStack& l) { return l.cells(); });
-    out.mesh = stage(
-        context, "assemble", [&] { return assemble({*lattice, c.kept, front, layers, c.surface.parts}); }, [](const PolyMesh& m) { return m.cells; });
-    RepairSummary repaired = stage(
-        context, "repair",
-        [&] {
-            const FeatureIndex lines(features);
-            const WallGuide guide{*c.index, lines, fitted.snaps, fitted.wishes};
-            RepairSummary r = repair(out.mesh, front, *lattice, layers, startThickness, guide);
-            for (int round = 0; r.remaining > 0 && round < mostCuts; ++round) {
-                std::vector<std::uint8_t> moved = std::move(r.movedWalls);
-                if (!cutUnderWrong(front, layers, plans, *c.index, static_cast<std::int32_t>(lattice->cellCount()), r.wrongCells)) break;
-                out.mesh = assemble({*lattice, c.kept, front, layers, c.surface.parts});
-                r = repair(out.mesh, front, *lattice, layers, startThickness, guide);
-                for (std::size_t v = 0; v < moved.size(); ++v) r.movedWalls[v] |= moved[v];
-            }
-            return r;
-        },
-        [](const RepairSummary& r) { return r.retracted; });
-    for (std::size_t v = 0; v < steepened.size() && v < repaired.movedWalls.size(); ++v) repaired.movedWalls[v] |= steepened[v] != 0;
+    LaidLayers laid = stage(
+        context, "layers", [&] { return layOn(front, plans, *c.index); }, [](const LaidLayers& l) { return l.stack.cells(); });
+    LayerStack& layers = laid.stack;
+    const FeatureIndex lines(features);
+    RepairSummary repaired = assembleAndRepair(out, *lattice, front, layers, plans, {*c.index, lines, fitted.snaps, fitted.wishes}, context);
     if (repaired.remaining > 0) {
         throw Error(ErrorKind::internal, fmt::format("{} cells could not be made valid", repaired.remaining), "", "please report the case");
     }
+    for (std::size_t v = 0; v < laid.movedWalls.size() && v < repaired.movedWalls.size(); ++v) repaired.movedWalls[v] |= laid.movedWalls[v];
     out.report = reportOf(c, options, context);
     out.report.fitCutShort = fitted.cutShort;
     out.walls = measureLayers(front, layers);
