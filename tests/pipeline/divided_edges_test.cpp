@@ -108,21 +108,23 @@ TEST_P(DividedFront, GivesAClosedMesh) {
 
 INSTANTIATE_TEST_SUITE_P(Many, DividedFront, testing::Range(0u, 4u));
 
-// Where the fit itself puts vertices in: the same.
+// Where the fit itself puts vertices in, which it seldom does: the same.
 TEST(DividedFront, OfTheFitGivesAClosedMesh) {
+    std::size_t inserted = 0;
     for (const Shape& shape : shapes()) {
-        if (std::string(shape.name) != "crossed-boxes") continue;
-        const ToMesh run(posed(shape, stagesSize, 0).soup, stagesOptions());
-        EXPECT_GT(run.front.inserted.size(), 0u);
-        EXPECT_EQ(run.front.inserted.size(), run.fitted.inserted);
-        EXPECT_EQ(run.mesh.validate(), "");
-        EXPECT_EQ(openByEdges(run.mesh), 0u);
-        const QualityReport q = measureQuality(run.mesh);
-        EXPECT_EQ(q.openCells + q.openCellsByEdges + q.unusedPoints + q.duplicateFaces + q.faultyFaceVertices, 0);
-        EXPECT_TRUE(q.upperTriangular);
-        return;
+        if (std::string(shape.name) != "crossed-boxes" && std::string(shape.name) != "gear") continue;
+        for (unsigned pose = 0; pose < 2; ++pose) {
+            const ToMesh run(posed(shape, stagesSize, pose).soup, stagesOptions());
+            inserted += run.front.inserted.size();
+            EXPECT_EQ(run.front.inserted.size(), run.fitted.inserted);
+            EXPECT_EQ(run.mesh.validate(), "");
+            EXPECT_EQ(openByEdges(run.mesh), 0u);
+            const QualityReport q = measureQuality(run.mesh);
+            EXPECT_EQ(q.openCells + q.openCellsByEdges + q.unusedPoints + q.duplicateFaces + q.faultyFaceVertices, 0);
+            EXPECT_TRUE(q.upperTriangular);
+        }
     }
-    FAIL() << "no such shape";
+    EXPECT_GT(inserted, 0u);
 }
 
 } // namespace
