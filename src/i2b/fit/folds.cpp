@@ -76,13 +76,13 @@ bool FoldFinder::goesOn(std::size_t n, const Snap& snap) const {
 bool FoldFinder::bends(std::size_t n) const {
     Vec3 first{};
     for (auto f : front_.mesh.vf_range(FrontMesh::VertexHandle(static_cast<int>(n)))) {
-        Vec3 area{}, from{}, last{};
-        int corners = 0;
-        for (auto v : front_.mesh.fv_range(f)) {
-            const Vec3& p = x_[static_cast<std::size_t>(v.idx())];
-            if (corners++ == 0) from = p;
-            else area += cross(last - from, p - from), last = p;
-            if (corners == 1) last = p;
+        auto v = front_.mesh.cfv_iter(f);
+        const Vec3 from = x_[static_cast<std::size_t>(v->idx())];
+        Vec3 area{}, last = from;
+        for (++v; v.is_valid(); ++v) {
+            const Vec3& p = x_[static_cast<std::size_t>(v->idx())];
+            area += cross(last - from, p - from);
+            last = p;
         }
         if (first == Vec3{}) first = area;
         else if (dot(first, area) < flat * norm(first) * norm(area)) return true;
