@@ -9,45 +9,45 @@
 
 namespace i2b {
 
-struct Lanes { // the compiler's vectors, as a type of our own
+struct LanePair { // the compiler's vectors, as a type of our own
     using Register = double __attribute__((vector_size(16)));
     Register v;
-    Lanes() = default;
-    explicit Lanes(double s) : v{s, s} {}
-    explicit Lanes(const Register& r) : v(r) {}
+    LanePair() = default;
+    explicit LanePair(double s) : v{s, s} {}
+    explicit LanePair(const Register& r) : v(r) {}
     double operator[](std::size_t i) const { return v[i]; }
     void set(std::size_t i, double s) { v[i] = s; }
-    friend Lanes operator+(const Lanes& a, const Lanes& b) { return Lanes(a.v + b.v); }
-    friend Lanes operator-(const Lanes& a, const Lanes& b) { return Lanes(a.v - b.v); }
-    friend Lanes operator*(const Lanes& a, const Lanes& b) { return Lanes(a.v * b.v); }
-    friend Lanes operator/(const Lanes& a, const Lanes& b) { return Lanes(a.v / b.v); }
-    friend Lanes operator*(double s, const Lanes& a) { return Lanes(s * a.v); }
-    Lanes operator-() const { return Lanes(-v); }
+    friend LanePair operator+(const LanePair& a, const LanePair& b) { return LanePair(a.v + b.v); }
+    friend LanePair operator-(const LanePair& a, const LanePair& b) { return LanePair(a.v - b.v); }
+    friend LanePair operator*(const LanePair& a, const LanePair& b) { return LanePair(a.v * b.v); }
+    friend LanePair operator/(const LanePair& a, const LanePair& b) { return LanePair(a.v / b.v); }
+    friend LanePair operator*(double s, const LanePair& a) { return LanePair(s * a.v); }
+    LanePair operator-() const { return LanePair(-v); }
 };
 
 // where[i] == value ? a[i] : b[i]
-inline Lanes choose(const Lanes& where, double value, const Lanes& a, const Lanes& b) {
-    return Lanes(where.v == value ? a.v : b.v);
+inline LanePair choose(const LanePair& where, double value, const LanePair& a, const LanePair& b) {
+    return LanePair(where.v == value ? a.v : b.v);
 }
 
 struct LaneVec3 {
-    Lanes x, y, z;
+    LanePair x, y, z;
     friend LaneVec3 operator+(const LaneVec3& a, const LaneVec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
     friend LaneVec3 operator-(const LaneVec3& a, const LaneVec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-    friend LaneVec3 operator*(const LaneVec3& a, const Lanes& s) { return {a.x * s, a.y * s, a.z * s}; }
+    friend LaneVec3 operator*(const LaneVec3& a, const LanePair& s) { return {a.x * s, a.y * s, a.z * s}; }
     LaneVec3 operator-() const { return {-x, -y, -z}; }
 };
-inline Lanes dot(const LaneVec3& a, const LaneVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline LanePair dot(const LaneVec3& a, const LaneVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline LaneVec3 cross(const LaneVec3& a, const LaneVec3& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-inline LaneVec3 choose(const Lanes& where, double value, const LaneVec3& a, const LaneVec3& b) {
+inline LaneVec3 choose(const LanePair& where, double value, const LaneVec3& a, const LaneVec3& b) {
     return {choose(where, value, a.x, b.x), choose(where, value, a.y, b.y), choose(where, value, a.z, b.z)};
 }
 
-inline Lanes cubeRoot(const Lanes& x) {
-    Lanes y;
+inline LanePair cubeRoot(const LanePair& x) {
+    LanePair y;
     for (std::size_t i = 0; i < 2; ++i) y.set(i, cubeRootGuess(x[i]));
     for (int i = 0; i < 2; ++i) {
-        const Lanes t = y * y * y;
+        const LanePair t = y * y * y;
         y = y * ((t + 2.0 * x) / (2.0 * t + x));
     }
     return y;
@@ -79,15 +79,15 @@ class LocalCorners {
   private:
     struct Pair {              // corners
         LaneVec3 e0, e1, e2;   // m, edges from node[0]
-        Lanes w0, w1, w2;  // inverse lengths
-        Lanes role;        // which of the corner's nodes it is
+        LanePair w0, w1, w2;  // inverse lengths
+        LanePair role;        // which of the corner's nodes it is
         LaneVec3 gradient;     // of D
-        Lanes det0;        // D at the node's present place
-        Lanes quadratic;   // trace = quadratic * |d|^2 + linear . d + trace0, with d the move from there
+        LanePair det0;        // D at the node's present place
+        LanePair quadratic;   // trace = quadratic * |d|^2 + linear . d + trace0, with d the move from there
         LaneVec3 linear;
-        Lanes trace0;
-        Lanes weight;
-        Lanes det, trace, root, inverse; // where energy() was asked for last: D, trace, D^(1/3), 1 / D
+        LanePair trace0;
+        LanePair weight;
+        LanePair det, trace, root, inverse; // where energy() was asked for last: D, trace, D^(1/3), 1 / D
     };
     struct Raw {               // of two corners, by lanes
         double p[4][3][2], w[3][2], role[2], weight[2];
@@ -115,7 +115,7 @@ inline void LocalCorners::gather(const Band& band, std::size_t node, const std::
         raw.role[lane] = (c.node[1] == self) + 2 * (c.node[2] == self) + 3 * (c.node[3] == self);
         raw.weight[lane] = i < count_ ? double(c.weight) : 0;
     }
-    const auto load = [](const double (&from)[2]) { return Lanes(Lanes::Register{from[0], from[1]}); };
+    const auto load = [](const double (&from)[2]) { return LanePair(LanePair::Register{from[0], from[1]}); };
     const auto loadVec = [&](const double (&from)[3][2]) { return LaneVec3{load(from[0]), load(from[1]), load(from[2])}; };
     for (std::size_t i = 0; i < pairs; ++i) {
         const Raw& raw = raw_[i];
@@ -124,12 +124,12 @@ inline void LocalCorners::gather(const Band& band, std::size_t node, const std::
         c.e0 = loadVec(raw.p[1]) - p0, c.e1 = loadVec(raw.p[2]) - p0, c.e2 = loadVec(raw.p[3]) - p0;
         c.w0 = load(raw.w[0]), c.w1 = load(raw.w[1]), c.w2 = load(raw.w[2]);
         c.role = load(raw.role), c.weight = load(raw.weight);
-        const Lanes volume = c.w0 * c.w1 * c.w2;
+        const LanePair volume = c.w0 * c.w1 * c.w2;
         const LaneVec3 g0 = cross(c.e1, c.e2) * volume, g1 = cross(c.e2, c.e0) * volume, g2 = cross(c.e0, c.e1) * volume;
         c.det0 = dot(g0, c.e0);
         c.trace0 = dot(c.e0, c.e0) * c.w0 * c.w0 + dot(c.e1, c.e1) * c.w1 * c.w1 + dot(c.e2, c.e2) * c.w2 * c.w2;
         const LaneVec3 l0 = c.e0 * (2.0 * c.w0 * c.w0), l1 = c.e1 * (2.0 * c.w1 * c.w1), l2 = c.e2 * (2.0 * c.w2 * c.w2);
-        const Lanes q0 = c.w0 * c.w0, q1 = c.w1 * c.w1, q2 = c.w2 * c.w2, none(0);
+        const LanePair q0 = c.w0 * c.w0, q1 = c.w1 * c.w1, q2 = c.w2 * c.w2, none(0);
         c.gradient = choose(c.role, 0, -(g0 + g1 + g2), choose(c.role, 1, g0, choose(c.role, 2, g1, g2)));
         c.quadratic = choose(c.role, 0, q0 + q1 + q2, choose(c.role, 1, q0, choose(c.role, 2, q1, q2)));
         c.linear = choose(c.role, 0, LaneVec3{none, none, none} - l0 - l1 - l2, choose(c.role, 1, l0, choose(c.role, 2, l1, l2)));
@@ -140,8 +140,8 @@ inline double LocalCorners::worstScaledJacobian() const {
     double worst = 1;
     for (std::size_t i = 0; i < (count_ + 1) / 2; ++i) {
         const Pair& c = pairs_[i];
-        const Lanes det = dot(cross(c.e0, c.e1), c.e2);
-        const Lanes n0 = dot(c.e0, c.e0), n1 = dot(c.e1, c.e1), n2 = dot(c.e2, c.e2);
+        const LanePair det = dot(cross(c.e0, c.e1), c.e2);
+        const LanePair n0 = dot(c.e0, c.e0), n1 = dot(c.e1, c.e1), n2 = dot(c.e2, c.e2);
         for (std::size_t k = 0; k < 2; ++k) {
             const double l = std::sqrt(n0[k]) * std::sqrt(n1[k]) * std::sqrt(n2[k]);
             worst = std::min(worst, l > 0 ? det[k] / l : -1);
@@ -151,8 +151,8 @@ inline double LocalCorners::worstScaledJacobian() const {
 }
 
 inline double LocalCorners::energy(const Vec3& d) {
-    const LaneVec3 move{Lanes(d.x), Lanes(d.y), Lanes(d.z)};
-    const Lanes length2(norm2(d));
+    const LaneVec3 move{LanePair(d.x), LanePair(d.y), LanePair(d.z)};
+    const LanePair length2(norm2(d));
     double sum = 0;
     bool inverted = false; // goes on all the same: faces that were just split may start so, and derivatives are asked for
     for (std::size_t i = 0; i < (count_ + 1) / 2; ++i) {
@@ -161,36 +161,36 @@ inline double LocalCorners::energy(const Vec3& d) {
         for (std::size_t k = 0; k < 2; ++k) inverted |= !(c.det[k] > 0);
         c.trace = c.trace0 + dot(c.linear, move) + c.quadratic * length2;
         c.root = cubeRoot(c.det);
-        c.inverse = Lanes(1) / c.det;
-        const Lanes phi = 0.25 * c.trace / (c.root * c.root) + 0.125 * (c.det + c.inverse);
-        const Lanes part = c.weight * phi * phi * phi;
+        c.inverse = LanePair(1) / c.det;
+        const LanePair phi = 0.25 * c.trace / (c.root * c.root) + 0.125 * (c.det + c.inverse);
+        const LanePair part = c.weight * phi * phi * phi;
         for (std::size_t k = 0; k < 2; ++k) sum += part[k];
     }
     return inverted ? std::numeric_limits<double>::infinity() : sum;
 }
 
 inline Derivatives LocalCorners::derivatives(const Vec3& d) const {
-    const LaneVec3 move{Lanes(d.x), Lanes(d.y), Lanes(d.z)};
-    const Lanes quarter(0.25), one(1);
+    const LaneVec3 move{LanePair(d.x), LanePair(d.y), LanePair(d.z)};
+    const LanePair quarter(0.25), one(1);
     Derivatives sum;
     for (std::size_t i = 0; i < (count_ + 1) / 2; ++i) {
         const Pair& c = pairs_[i];
-        const Lanes d23 = quarter / (c.root * c.root);
+        const LanePair d23 = quarter / (c.root * c.root);
         const LaneVec3 t = c.linear + move * (2.0 * c.quadratic);
-        const Lanes phi = c.trace * d23 + 0.125 * (c.det + c.inverse);
-        const Lanes slope = -(2.0 / 3) * c.trace * d23 * c.inverse + 0.125 * (one - c.inverse * c.inverse); // d phi / d det
+        const LanePair phi = c.trace * d23 + 0.125 * (c.det + c.inverse);
+        const LanePair slope = -(2.0 / 3) * c.trace * d23 * c.inverse + 0.125 * (one - c.inverse * c.inverse); // d phi / d det
         const LaneVec3 dphi = t * d23 + c.gradient * slope;
-        const Lanes w = 3.0 * c.weight * phi * phi;
+        const LanePair w = 3.0 * c.weight * phi * phi;
         const LaneVec3 gradient = dphi * w;
         // In order: of 2 quadratic 1, (t g^T + g t^T), g g^T and dphi dphi^T, each with its weight.
         const LaneVec3& g = c.gradient;
-        const Lanes identity = w * Lanes(2) * c.quadratic * d23, both = -w * Lanes(2.0 / 3) * d23 * c.inverse;
-        const Lanes outer = w * ((10.0 / 9) * c.trace * d23 * c.inverse * c.inverse + 0.25 * c.inverse * c.inverse * c.inverse);
+        const LanePair identity = w * LanePair(2) * c.quadratic * d23, both = -w * LanePair(2.0 / 3) * d23 * c.inverse;
+        const LanePair outer = w * ((10.0 / 9) * c.trace * d23 * c.inverse * c.inverse + 0.25 * c.inverse * c.inverse * c.inverse);
         const LaneVec3 s = t * both, u = g * both, v = g * outer, r = dphi * (6.0 * c.weight * phi);
-        const Lanes cxx = 2.0 * s.x * g.x, cxy = s.x * g.y + u.x * t.y, cxz = s.x * g.z + u.x * t.z;
-        const Lanes cyy = 2.0 * s.y * g.y, cyz = s.y * g.z + u.y * t.z, czz = 2.0 * s.z * g.z;
-        const Lanes oxx = v.x * g.x, oxy = v.x * g.y, oxz = v.x * g.z, oyy = v.y * g.y, oyz = v.y * g.z, ozz = v.z * g.z;
-        const Lanes pxx = r.x * dphi.x, pxy = r.x * dphi.y, pxz = r.x * dphi.z, pyy = r.y * dphi.y, pyz = r.y * dphi.z, pzz = r.z * dphi.z;
+        const LanePair cxx = 2.0 * s.x * g.x, cxy = s.x * g.y + u.x * t.y, cxz = s.x * g.z + u.x * t.z;
+        const LanePair cyy = 2.0 * s.y * g.y, cyz = s.y * g.z + u.y * t.z, czz = 2.0 * s.z * g.z;
+        const LanePair oxx = v.x * g.x, oxy = v.x * g.y, oxz = v.x * g.z, oyy = v.y * g.y, oyz = v.y * g.z, ozz = v.z * g.z;
+        const LanePair pxx = r.x * dphi.x, pxy = r.x * dphi.y, pxz = r.x * dphi.z, pyy = r.y * dphi.y, pyz = r.y * dphi.z, pzz = r.z * dphi.z;
         for (std::size_t k = 0; k < 2; ++k) {
             sum.gradient.x += gradient.x[k], sum.gradient.y += gradient.y[k], sum.gradient.z += gradient.z[k];
             auto& h = sum.hessian;
