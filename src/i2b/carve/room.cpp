@@ -29,13 +29,16 @@ Room::Room(const CellGrid& grid, const CutCells& cut, const Regions& regions, co
     : grid_(grid), kept_(kept), taken_(taken), index_(index), options_(options), painted_(regions.cellsOf(region.id)),
       candidates_(candidatesOf(grid, cut, regions, painted_, kept, options.pocketCells)) {}
 
-// By a face, an edge or a corner, whatever the level of the other cell.
+// By a face, an edge or a corner, whatever the level of the other cell; grids are graded 2:1 across all of these.
 bool Room::touchesTaken(const Place& c) const {
     const LevelTriple& own = grid_.levels[std::size_t(c.level)].level;
     const int finest = grid_.lattice.maxLevel;
     for (std::size_t l = 0; l < taken_.size(); ++l) {
         const LevelTriple& level = grid_.levels[l].level;
         Index3 first{}, last{};
+        bool graded = true;
+        for (std::size_t axis = 0; axis < 3; ++axis) graded = graded && std::abs(level[axis] - own[axis]) <= 1;
+        if (!graded) continue;
         for (std::size_t axis = 0; axis < 3; ++axis) { // closed intervals of the finest lattice meet
             const int shift = finest - level[axis], ownShift = finest - own[axis];
             const std::int64_t low = std::int64_t(c.at[axis]) << ownShift, high = std::int64_t(c.at[axis] + 1) << ownShift;
