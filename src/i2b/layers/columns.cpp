@@ -80,9 +80,13 @@ class Prisms {
     std::vector<Vec3> points_;
 };
 
+Upright worse(const Upright& a, const Upright& b) { return {std::min(a.layers, b.layers), std::min(a.innermost, b.innermost)}; }
+
+bool areRight(const Upright& bent, const Upright& straight) {
+    return (bent.layers > 0 || bent.layers >= straight.layers) && (bent.innermost > 0 || bent.innermost >= straight.innermost);
+}
+
 bool mayStand(const Upright& bent, const Upright& straight) {
-    if (!(bent.layers > 0 || bent.layers >= straight.layers)) return false;
-    if (!(bent.innermost > 0 || bent.innermost >= straight.innermost)) return false;
     return bent.layers >= std::min(straight.layers, goodCorner) && bent.innermost >= std::min(innermost * straight.innermost, goodCorner);
 }
 
@@ -99,33 +103,36 @@ std::vector<Column> fullyBent(const Front& front, const LayerStack& stack) {
 
 } // namespace
 
-// In rounds: faces whose stack cannot stand halve the bends of their vertices, all at once, and are looked at again with
-// those around them.
+// In rounds: vertices that would stand worse bent than straight, over all faces around, halve their bends, all at once, and
+// these faces are looked at again. One face may be worse off where another was still worse.
 void bendColumns(const Front& front, LayerStack& stack) {
     if (stack.count == 1 && stack.uniform()) return;
     LayerStack straight = stack;
     stack.columns = fullyBent(front, stack);
-    std::vector<std::uint8_t> looks(stack.faces, 1), fails(stack.faces, 0);
-    for (bool again = true; again;) {
+    std::vector<std::uint8_t> looks(stack.faces, 1), lowered(stack.vertices, 0);
+    std::vector<Upright> bent(stack.faces), upright(stack.faces); // upright: with straight columns
+    for (bool first = true, again = true; again; first = false) {
         parallelChunks(stack.faces, 256, [&](Index begin, Index end, Index) {
             Prisms prisms(front, stack);
             for (Index f = begin; f < end; ++f) {
-                fails[f] = 0;
                 if (!looks[f] || stack.cellsOf(f) < 2) continue;
-                const auto around = front.mesh.fv_range(faceAt(f));
-                const bool bends = std::any_of(around.begin(), around.end(), [&](auto v) { return stack.columns[Index(v.idx())].bend > 0; });
-                if (!bends) continue;
                 prisms.take(f);
-                fails[f] = !mayStand(prisms.look(stack), prisms.look(straight));
+                bent[f] = prisms.look(stack);
+                if (first) upright[f] = prisms.look(straight);
             }
         });
-        again = std::find(fails.begin(), fails.end(), 1) != fails.end();
-        if (!again) break;
-        std::vector<std::uint8_t> lowered(stack.vertices, 0);
         parallelFor(stack.vertices, [&](Index v) {
             float& bend = stack.columns[v].bend;
-            const auto around = front.mesh.vf_range(vertexAt(v));
-            if (bend == 0 || std::none_of(around.begin(), around.end(), [&](auto f) { return fails[Index(f.idx())] != 0; })) return;
+            lowered[v] = 0;
+            if (bend == 0) return;
+            Upright with, without;
+            bool right = true;
+            for (auto f : front.mesh.vf_range(vertexAt(v))) {
+                const Upright &b = bent[Index(f.idx())], &s = upright[Index(f.idx())];
+                with = worse(with, b), without = worse(without, s);
+                right = right && areRight(b, s);
+            }
+            if (right && mayStand(with, without)) return;
             bend = bend * 0.5f < leastBend ? 0 : bend * 0.5f;
             lowered[v] = 1;
         });
@@ -133,6 +140,7 @@ void bendColumns(const Front& front, LayerStack& stack) {
             const auto around = front.mesh.fv_range(faceAt(f));
             looks[f] = std::any_of(around.begin(), around.end(), [&](auto v) { return lowered[Index(v.idx())] != 0; });
         });
+        again = std::find(lowered.begin(), lowered.end(), 1) != lowered.end();
     }
 }
 

@@ -7,14 +7,14 @@
 namespace i2b {
 namespace {
 
-constexpr double stepBack = 0.35; // of the way from start to fit, a round
+constexpr double backward = 0.35; // of the way from start to fit, a round
 constexpr double slope = 0.34;    // largest difference between points of one cell
 constexpr int gentleRounds = 12;  // then the points of a bad cell go back whole
 constexpr int lastRound = 40;
 constexpr int qualityRounds = 14;
 constexpr double qualityStep = 0.2;
 constexpr int settleRounds = 3;
-constexpr std::int64_t manyFaults = 200;
+constexpr std::int64_t manyFaults = 200, fewFaults = 200;
 constexpr int mendSweeps = 12;
 constexpr int bendRounds = 3, thinPause = 4; // of columns bent anew, with sweeps between
 constexpr int thinSweeps = 24;    // of thin layers: all of a column move as one
@@ -222,13 +222,15 @@ void Retreat::restore(const std::vector<float>& beta) {
 
 namespace {
 
+enum class RetreatFrom { wrong, severe, poor };
+
 // Steps back until nothing is wrong, then, if asked to, for quality as long as it helps.
-void retreatFromFaults(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults, Nodes& nodes, bool forQuality, RepairSummary& summary) {
+void retreatFromFaults(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults, Nodes& nodes, RetreatFrom from, RepairSummary& summary) {
     Retreat retreat(mesh, cellFaces, faults, nodes);
     std::vector<std::int32_t> bad = faults.badCells();
     const auto makeValid = [&] {
         for (int round = 0; !bad.empty() && round < lastRound; ++round, ++summary.rounds) {
-            retreat.step(bad, round < gentleRounds ? float(stepBack) : 1.0f);
+            retreat.step(bad, round < gentleRounds ? float(backward) : 1.0f);
             bad = faults.badCells();
         }
     };
@@ -244,7 +246,7 @@ void retreatFromFaults(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults
     // The best state counts. Severe faults first: what mends them may leave layers thin beside a large cell, which is the
     // lesser evil.
     for (const bool severeOnly : {true, false}) {
-        if (!forQuality) break;
+        if (from == RetreatFrom::wrong || (from == RetreatFrom::severe && !severeOnly)) break;
         FaultCount count;
         std::vector<std::int32_t> poor = faults.poorCells(count, severeOnly);
         for (int round = 0; !poor.empty() && bad.empty() && round < qualityRounds; ++round, ++summary.rounds) {
@@ -288,6 +290,12 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, L
         faults.poorCells(poor);
         return poor.all == 0 && faults.badCells().empty();
     };
+    const auto stepBack = [&](RetreatFrom from) {
+        Nodes nodes(front, lattice, layers, startThickness);
+        retreatFromFaults(mesh, cellFaces, faults, nodes, from, summary);
+        nodes.store(front);
+        for (float beta : nodes.beta) summary.retracted += beta < 1;
+    };
     // What single moves do not mend steps back; from there they may.
     const auto settle = [&] {
         constexpr std::int64_t any = std::numeric_limits<std::int64_t>::max();
@@ -304,10 +312,7 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, L
                 summary.moves += optimiser.mend(mendSweeps, true);
                 if (isClean() || (summary.moves == before && faults.badCells().empty())) return;
             }
-            Nodes nodes(front, lattice, layers, startThickness);
-            retreatFromFaults(mesh, cellFaces, faults, nodes, !thin, summary);
-            nodes.store(front);
-            for (float beta : nodes.beta) summary.retracted += beta < 1;
+            stepBack(thin ? RetreatFrom::wrong : RetreatFrom::poor);
         }
     };
     settle();
@@ -322,6 +327,12 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, L
     summary.moves += optimiser.pullIn(pullSweeps);
     settle();
     isClean();
+    if (thin && poor.severe > 0 && poor.severe <= fewFaults) {
+        // Rather a few nodes off the wall than a face that spoils the solution.
+        stepBack(RetreatFrom::severe);
+        summary.moves += optimiser.mend(mendSweeps);
+        isClean();
+    }
     summary.poorRemaining = poor.all;
     noteMoved();
     return summary;
