@@ -3,6 +3,7 @@
 // fixed points of the outermost cells.
 #pragma once
 #include "i2b/front/front.h"
+#include "i2b/front/wanted_room.h"
 #include <array>
 #include <cstdint>
 #include <span>
@@ -55,10 +56,14 @@ struct Band {
     Csr<BandEdge> edges;                  // per node: a is the node itself, b the other end
     Csr<std::int32_t> parents;            // per node: ends of the coarse edge or face on whose middle it hangs; or none
 
+    WantedRoom room;                      // between front and wall
+
     std::size_t nodes() const { return start.size(); }
+    // Of a prism at a wall or front node, in h: what the energy and the Laplacian tend to.
+    double prismHeight(std::size_t node) const;
 };
 
-Band buildBand(const LatticeMesh& mesh, const Front& front, int rings);
+Band buildBand(const LatticeMesh& mesh, const Front& front, int rings, const WantedRoom& room = {});
 
 // After faces of the front were split: the same nodes and core, other prisms.
 void renewPrisms(Band& band, const Front& front);

@@ -92,7 +92,7 @@ void addPrism(const Band& band, const Front& front, std::size_t f, BandPieces& o
         const double l1 = norm(e1), l2 = norm(e2);
         out.edges.push_back(edgeKey(std::min(b, next), std::max(b, next)));
         if (norm2(cross(e1, e2)) < 0.25 * norm2(e1) * norm2(e2)) continue; // hangs on this polygon's edge
-        const double height = prismHeight * std::min(l1, l2) * stretch(front.size[static_cast<std::size_t>(b)], cross(e1, e2));
+        const double height = band.prismHeight(static_cast<std::size_t>(b)) * std::min(l1, l2) * stretch(front.size[static_cast<std::size_t>(b)], cross(e1, e2));
         const auto il1 = static_cast<float>(1 / l1), il2 = static_cast<float>(1 / l2), ih = static_cast<float>(1 / height);
         out.corners.push_back({{frontOf(b), frontOf(next), frontOf(previous), b}, {il1, il2, ih}, 4});
         out.corners.push_back({{b, previous, next, frontOf(b)}, {il2, il1, ih}, 4});

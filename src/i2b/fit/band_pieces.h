@@ -8,7 +8,6 @@
 
 namespace i2b {
 
-inline constexpr double prismHeight = 0.7; // of h: what the energy and the Laplacian tend to
 
 using Hanging = std::pair<std::int32_t, std::array<std::int32_t, 4>>; // a node and its parents, -1 filled
 inline bool sameNode(const Hanging& a, const Hanging& b) { return a.first == b.first; }

@@ -92,11 +92,11 @@ void seekOnce(Front& front, const Band& band, const SurfaceIndex& index, const F
 } // namespace
 
 FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& index, const FeatureGraph& graph,
-                    const FitOptions& options, const Context& context) {
+                    const FitOptions& options, const Context& context, const WantedRoom& room) {
     FitSummary summary;
     EnergyOptions energy;
     energy.budget = Budget(options.seconds);
-    Band band = buildBand(mesh, front, rings);
+    Band band = buildBand(mesh, front, rings, room);
     summary.wallNodes = band.walls;
     context.checkCancelled();
     const std::vector<Vec3> start = startPositions(band, index);

@@ -8,6 +8,7 @@ namespace i2b {
 namespace {
 
 constexpr double leastTransition = 0.5; // of the height of the last layer
+constexpr double wantedTransition = 1;  // the same
 constexpr double sameEnough = 0.01;     // three figures that agree as well do not contradict each other
 
 // Changes first and growth so that n layers and a cell of `extra` times the last one's height fill `height`.
@@ -19,6 +20,11 @@ void fit(double& first, double& growth, int n, double height, double extra) {
 }
 
 } // namespace
+
+double LayerPlan::room() const {
+    if (count == 0 || fills()) return 0;
+    return stackHeight(first, growth, count) + wantedTransition * first * std::pow(growth, count - 1);
+}
 
 double stackHeight(double first, double ratio, int n) {
     double sum = 0, h = first;

@@ -18,6 +18,7 @@ struct LayerPlan {
     bool relative = false;           // first is in cell sizes
 
     bool fills() const { return first == 0; }
+    double room() const;             // that they and a cell over them want, m or cell sizes; 0: any will do
     double firstAt(double cellSize) const { return relative ? first * cellSize : first; } // m
 };
 

@@ -9,6 +9,7 @@
 //      wall   o-------o-------o-------o
 #pragma once
 #include "i2b/front/front.h"
+#include "i2b/front/wanted_room.h"
 #include "i2b/geometry/surface.h"
 #include "i2b/layers/columns.h"
 #include "i2b/layers/layer_plan.h"
@@ -25,6 +26,7 @@ struct WallPlans {
     std::vector<std::string> notes;          // rules that mean no part
 };
 // Throws Error(usage) where a name is no regular expression or there are more than 65535 rules.
+WantedRoom roomWanted(const WallPlans& plans);
 WallPlans plansOf(const LayerOptions& options, const std::vector<Part>& parts);
 
 // Points of a vertex run from the front, which is a point of the kept cells and not counted, to the wall; cells of a face

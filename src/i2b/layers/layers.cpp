@@ -92,6 +92,15 @@ WallPlans plansOf(const LayerOptions& options, const std::vector<Part>& parts) {
     return out;
 }
 
+WantedRoom roomWanted(const WallPlans& plans) {
+    WantedRoom room;
+    for (const LayerPlan& plan : plans.plans) {
+        double& most = plan.relative ? room.cells : room.metres;
+        most = std::max(most, plan.room());
+    }
+    return room;
+}
+
 LayerStack makeLayers(const Front& front, const WallPlans& plans) {
     LayerStack stack;
     stack.plans = plans.plans;

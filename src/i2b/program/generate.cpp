@@ -171,13 +171,13 @@ MeshResult generate(const Options& options, Context& context) {
         [](const FeatureGraph& f) { return f.edges.size(); });
     std::vector<std::string>& notes = out.cartesian->notes.messages;
     notes.insert(notes.end(), features.notes.begin(), features.notes.end());
-    FitSummary fitted = stage(
-        context, "fit",
-        [&] { return fitFront(front, *lattice, *c.index, features, options.fit, context); },
-        [](const FitSummary& s) { return s.wallNodes; });
-    assignParts(front, *c.index);
     const WallPlans plans = plansOf(options.layers, c.surface.parts);
     notes.insert(notes.end(), plans.notes.begin(), plans.notes.end());
+    FitSummary fitted = stage(
+        context, "fit",
+        [&] { return fitFront(front, *lattice, *c.index, features, options.fit, context, roomWanted(plans)); },
+        [](const FitSummary& s) { return s.wallNodes; });
+    assignParts(front, *c.index);
     LaidLayers laid = stage(
         context, "layers", [&] { return layOn(front, plans, *c.index); }, [](const LaidLayers& l) { return l.stack.cells(); });
     LayerStack& layers = laid.stack;
