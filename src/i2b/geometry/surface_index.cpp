@@ -121,6 +121,7 @@ TriangleTree buildTriangleTree(const Surface& surface) {
     tree.reach = std::max(maxAbs(bounds.lo - tree.centre), maxAbs(bounds.hi - tree.centre));
     tree.magnitude = std::max(maxAbs(bounds.lo), maxAbs(bounds.hi));
 
+    tree.placeOf.resize(surface.triangles.size());
     std::vector<RTCBuildPrimitive> primitives = buildPrimitives(surface, tree.centre);
     RTCDevice device = rtcNewDevice(nullptr);
     RTCBVH bvh = rtcNewBVH(device);
@@ -157,6 +158,7 @@ TriangleTree buildTriangleTree(const Surface& surface) {
     if (tree.triangles.size() != surface.triangles.size()) throwOutOfMemory();
     parallelFor(tree.triangles.size(), [&](std::size_t i) {
         TreeTriangle& t = tree.triangles[i];
+        tree.placeOf[t.id] = static_cast<std::uint32_t>(i);
         const auto& v = surface.triangles[t.id];
         t.a = surface.points[v[0]];
         t.b = surface.points[v[1]];
@@ -319,10 +321,8 @@ void SurfaceIndex::Impl::walkClosest(const Vec3& q, const Accept& accept, Closes
     };
     Real limit = limitOf(best2);
     TreeStack<Real> stack;
-    stack.push(0, 0, 0, 0);
-    while (stack.size > 0) {
-        const auto item = stack.items[--stack.size];
-        if (item.key > limit) continue;
+    typename TreeStack<Real>::Item item{0, 0, 0};
+    while (true) {
         if (item.count > 0) {
             for (std::uint32_t i = 0; i < item.count; ++i) {
                 const TreeTriangle& t = tree.triangles[item.child + i];
@@ -334,10 +334,10 @@ void SurfaceIndex::Impl::walkClosest(const Vec3& q, const Accept& accept, Closes
                 if (d2 < best2) limit = limitOf(d2);
                 best2 = d2;
             }
+            if (!stack.pop(limit, item)) return;
             continue;
         }
         const TreeNode& node = tree.nodes[item.child];
-        Real key[4];
         V sum{};
         const Real at[3] = {x, y, z};
         for (int k = 0; k < 3; ++k) {
@@ -349,11 +349,9 @@ void SurfaceIndex::Impl::walkClosest(const Vec3& q, const Accept& accept, Closes
             d = d > Real(0) ? d : V{};
             sum += d * d;
         }
+        Real key[4];
         std::memcpy(key, &sum, sizeof key);
-        const std::size_t base = stack.size;
-        for (std::size_t i = 0; i < 4; ++i)
-            if (key[i] <= limit && node.child[i] != TreeNode::none)
-                stack.push(base, key[i], node.child[i], node.count[i]);
+        if (!stack.enter(tree, node, key, bitsOf(sum <= limit), item) && !stack.pop(limit, item)) return;
     }
 }
 
@@ -381,20 +379,21 @@ bool SurfaceIndex::Impl::walkBox(const Box& box, const Visit& visit) const {
     const Vec3 reach{pad, pad, pad};
     const Box about{box.lo - tree.centre - reach, box.hi - tree.centre + reach};
     TreeStack<int> stack;
-    stack.push(0, 0, 0, 0);
-    while (stack.size > 0) {
-        const auto item = stack.items[--stack.size];
+    TreeStack<int>::Item item{0, 0, 0};
+    constexpr std::array<int, 4> keys{};
+    while (true) {
         if (item.count > 0) {
             for (std::uint32_t i = 0; i < item.count; ++i)
                 if (visit(tree.triangles[item.child + i])) return true;
+            if (!stack.pop(0, item)) return false;
             continue;
         }
         const TreeNode& node = tree.nodes[item.child];
-        for (std::size_t i = 0; i < 4; ++i)
-            if (node.child[i] != TreeNode::none && about.overlaps(treeBox(node, i)))
-                stack.items[stack.size++] = {0, node.child[i], node.count[i]};
+        unsigned bits = childrenOf(node);
+        for (unsigned i = 0; i < 4; ++i)
+            if (!about.overlaps(treeBox(node, i))) bits &= ~(1u << i);
+        if (!stack.enter(tree, node, keys.data(), bits, item) && !stack.pop(0, item)) return false;
     }
-    return false;
 }
 
 SurfaceIndex::SurfaceIndex(const Surface& surface) : impl_(std::make_unique<Impl>()) {
@@ -437,10 +436,8 @@ SegmentHit SurfaceIndex::firstHit(const Vec3& a, const Vec3& b, double before) c
     const auto limitOf = [&](double t) { return static_cast<float>(t) * wide; };
     float limit = limitOf(best.t);
     TreeStack<float> stack;
-    stack.push(0, 0, 0, 0);
-    while (stack.size > 0) {
-        const auto item = stack.items[--stack.size];
-        if (item.key > limit) continue;
+    TreeStack<float>::Item item{0, 0, 0};
+    while (true) {
         if (item.count > 0) {
             for (std::uint32_t i = 0; i < item.count; ++i) {
                 const TreeTriangle& tri = tree.triangles[item.child + i];
@@ -448,6 +445,7 @@ SegmentHit SurfaceIndex::firstHit(const Vec3& a, const Vec3& b, double before) c
                 if (t < best.t || (t == best.t && t <= 1 && tri.id < best.triangle)) best = {t, tri.id};
             }
             limit = limitOf(best.t);
+            if (!stack.pop(limit, item)) break;
             continue;
         }
         const TreeNode& node = tree.nodes[item.child];
@@ -462,10 +460,9 @@ SegmentHit SurfaceIndex::firstHit(const Vec3& a, const Vec3& b, double before) c
             leave = e < leave ? e : leave;
         }
         leave *= wide;
-        const std::size_t base = stack.size;
-        for (std::size_t i = 0; i < 4; ++i)
-            if (node.child[i] != TreeNode::none && enter[i] <= leave[i])
-                stack.push(base, enter[i], node.child[i], node.count[i]);
+        float key[4];
+        std::memcpy(key, &enter, sizeof key);
+        if (!stack.enter(tree, node, key, bitsOf(enter <= leave) & childrenOf(node), item) && !stack.pop(limit, item)) break;
     }
     return best ? best : SegmentHit{};
 }
@@ -490,10 +487,10 @@ std::vector<std::uint32_t> SurfaceIndex::candidates(const Box& box) const {
     return found;
 }
 
+// Most often asked of a triangle that a query has just found: the tree's copy of it is at hand, the surface's points are not.
 Vec3 SurfaceIndex::normal(std::uint32_t triangle) const {
-    const Surface& s = surface();
-    const auto& t = s.triangles[triangle];
-    return normalized(cross(s.points[t[1]] - s.points[t[0]], s.points[t[2]] - s.points[t[0]]));
+    const TreeTriangle& t = impl_->tree.triangles[impl_->tree.placeOf[triangle]];
+    return normalized(cross(t.b - t.a, t.c - t.a));
 }
 
 } // namespace i2b

@@ -6,8 +6,10 @@
 #include "i2b/core/vec.h"
 #include "i2b/geometry/surface.h"
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace i2b {
@@ -30,6 +32,7 @@ struct TriangleTree {
     double magnitude = 0;        // m, largest coordinate about the origin
     std::vector<TreeNode> nodes; // the root first; empty without triangles
     std::vector<TreeTriangle> triangles;
+    std::vector<std::uint32_t> placeOf; // per triangle of the surface: where it is among these
 };
 
 TriangleTree buildTriangleTree(const Surface& surface);
@@ -38,11 +41,29 @@ TriangleTree buildTriangleTree(const Surface& surface);
 using Lanes = double __attribute__((vector_size(32)));
 using FloatLanes = float __attribute__((vector_size(16)));
 
+// Bit i: there is a child i.
+inline unsigned childrenOf(const TreeNode& node) {
+    unsigned bits = 0;
+    for (unsigned i = 0; i < 4; ++i) bits |= node.child[i] != TreeNode::none ? 1u << i : 0u;
+    return bits;
+}
+
 inline Box treeBox(const TreeNode& node, std::size_t i) {
     return {{node.lo[0][i], node.lo[1][i], node.lo[2][i]}, {node.hi[0][i], node.hi[1][i], node.hi[2][i]}};
 }
 
-// Children still to visit, nearest first. Sized for any tree: the depth is capped when building.
+// Bit i: lane i of a comparison holds.
+template <class Mask>
+unsigned bitsOf(const Mask& m) {
+#if defined(__SSE2__)
+    if constexpr (sizeof m == sizeof(FloatLanes)) return static_cast<unsigned>(__builtin_ia32_movmskps(FloatLanes(m)));
+#endif
+    unsigned bits = 0;
+    for (unsigned i = 0; i < 4; ++i) bits |= m[i] ? 1u << i : 0u;
+    return bits;
+}
+
+// Children still to visit, nearest last. Sized for any tree: the depth is capped when building.
 template <class Key>
 struct TreeStack {
     struct Item {
@@ -52,12 +73,41 @@ struct TreeStack {
     std::array<Item, 3 * 64 + 4> items;
     std::size_t size = 0;
 
-    // Pushes and keeps the new items (from `base` on) in descending order of key, so that the nearest is on
-    // top.
-    void push(std::size_t base, Key key, std::uint32_t child, std::uint32_t count) {
-        std::size_t at = size++;
-        for (; at > base && items[at - 1].key < key; --at) items[at] = items[at - 1];
-        items[at] = {key, child, count};
+    // Goes on to the nearest of the children named by bits, most often the only one; the others wait, and their memory is
+    // asked for meanwhile. False: there is none.
+    bool enter(const TriangleTree& tree, const TreeNode& node, const Key* key, unsigned bits, Item& item) {
+        if (bits == 0) return false;
+        const auto take = [&] {
+            const auto i = static_cast<unsigned>(std::countr_zero(bits));
+            bits &= bits - 1;
+            return Item{key[i], node.child[i], node.count[i]};
+        };
+        item = take();
+        const std::size_t base = size;
+        while (bits != 0) {
+            Item next = take();
+            if (next.key < item.key) std::swap(next, item);
+            std::size_t at = size++;
+            for (; at > base && items[at - 1].key < next.key; --at) items[at] = items[at - 1];
+            items[at] = next;
+            fetch(tree, next);
+        }
+        return true;
+    }
+    // The next one no farther than the limit; false: none.
+    bool pop(Key limit, Item& item) {
+        while (size > 0) {
+            item = items[--size];
+            if (item.key <= limit) return true;
+        }
+        return false;
+    }
+
+  private:
+    static void fetch(const TriangleTree& tree, const Item& item) {
+        const void* const at = item.count == 0 ? static_cast<const void*>(&tree.nodes[item.child]) : &tree.triangles[item.child];
+        __builtin_prefetch(at);
+        __builtin_prefetch(static_cast<const char*>(at) + 64);
     }
 };
 
