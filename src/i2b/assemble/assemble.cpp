@@ -131,14 +131,13 @@ void Assembler::coreFaces(int level, std::size_t node, LatticeMesh::Reader& read
         std::lower_bound(in_.front.ownerCell.begin(), in_.front.ownerCell.end(), rank) - in_.front.ownerCell.begin());
     bits::forEach(leafBits(&cells.leaf(node)), [&](int x, int y, int z) {
         pending.clear();
-        reader.faces(level, {o[0] + x, o[1] + y, o[2] + z}, [&](const CellFace& face) {
+        const auto take = [&](const CellFace& face) {
             Pending p;
             p.n = face.vertices;
             std::copy_n(face.points.begin(), p.n, p.points.begin());
             if (face.kind != FaceKind::front) p.n = static_cast<std::uint8_t>(divided_.addTo(p.points, p.n));
             if (face.kind == FaceKind::side) return emit(std::size_t(1) + face.side, rank, 0, p.span());
             if (face.kind == FaceKind::internal) {
-                if (face.other < rank) return;
                 p.neighbour = static_cast<std::int32_t>(face.other);
                 pending.push_back(p);
                 return;
@@ -148,7 +147,8 @@ void Assembler::coreFaces(int level, std::size_t node, LatticeMesh::Reader& read
                 p.neighbour = layerCell(next, 0);
                 pending.push_back(p);
             }
-        });
+        };
+        reader.faces(level, {o[0] + x, o[1] + y, o[2] + z}, take, rank);
         std::sort(pending.begin(), pending.end(), [](const Pending& a, const Pending& b) { return a.neighbour < b.neighbour; });
         for (const Pending& p : pending) emit(std::size_t(0), rank, p.neighbour, p.span());
         ++rank;

@@ -2,6 +2,7 @@
 #include "i2b/core/checksum.h"
 #include "i2b/core/error.h"
 #include <fmt/format.h>
+#include <limits>
 
 namespace i2b {
 namespace {
@@ -15,14 +16,16 @@ void collectFaces(const LatticeMesh& mesh, int level, std::size_t node, LatticeM
     const RankedMask& cells = mesh.cells(level);
     const Index3 o = toIndex(cells.leaf(node).origin());
     auto rank = static_cast<std::int32_t>(cells.leafFirst(node));
+    constexpr auto noInternal = std::numeric_limits<std::int64_t>::max();
     bits::forEach(leafBits(&cells.leaf(node)), [&](int x, int y, int z) {
-        reader.faces(level, {o[0] + x, o[1] + y, o[2] + z}, [&](const CellFace& face) {
+        const auto take = [&](const CellFace& face) {
             if (face.kind != FaceKind::front) return;
             out.owner.push_back(rank);
             out.size.push_back(face.vertices);
             out.level.push_back(face.level);
             out.fans.insert(out.fans.end(), face.fans.begin(), face.fans.begin() + face.vertices);
-        });
+        };
+        reader.faces(level, {o[0] + x, o[1] + y, o[2] + z}, take, noInternal);
         ++rank;
     });
 }

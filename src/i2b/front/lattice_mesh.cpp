@@ -72,14 +72,39 @@ std::vector<Vec3> LatticeMesh::latticePoints() const {
 }
 
 LatticeMesh::Reader::Reader(const LatticeMesh& mesh)
-    : mesh_(mesh), touching_(touchingLevels(mesh.grid_)), lookup_(mesh.grid_, mesh.kept_.levels) {
+    : mesh_(mesh), touching_(touchingLevels(mesh.grid_)), lookup_(mesh.grid_, mesh.kept_.levels), isCubes_(mesh.cubes()),
+      spots_(spotsAlong * spotsAlong * spotsAlong) {
     for (const RankedMask& cells : mesh.cells_) kept_.emplace_back(cells);
     for (const CellLevel& level : mesh.grid_.levels) cells_.emplace_back(*level.cells);
     for (const RankedMask& points : mesh.points_) points_.emplace_back(points);
     for (const RankedMask& points : mesh.frontPoints_) frontPoints_.emplace_back(points);
 }
 
-// Finds the faces of cell c in one direction: one, or up to four where the cells across are finer along the face.
+// What was looked up stays good as long as cells of the same node follow each other.
+void LatticeMesh::Reader::enter(int level, const Index3& c) {
+    const Index3 at{c[0] >> 3, c[1] >> 3, c[2] >> 3};
+    if (level == nodeLevel_ && at == nodeAt_) return;
+    ++node_;
+    nodeLevel_ = level;
+    nodeAt_ = at;
+    origin_ = {32 * at[0], 32 * at[1], 32 * at[2]};
+    hasFiner_ = mayHaveFiner(level, at);
+}
+
+// Most nodes are far from any finer cell: their faces have four vertices, and nobody need look for more.
+bool LatticeMesh::Reader::mayHaveFiner(int level, const Index3& node) {
+    if (!isCubes_) return true;
+    const auto finer = static_cast<std::size_t>(mesh_.levelOf(level).finest() + 1);
+    if (finer >= points_.size()) return false;
+    for (int i = 0; i < 27; ++i) { // the nodes of points in it, and those that begin on its upper sides
+        const Index3 at{2 * node[0] + i / 9, 2 * node[1] + i / 3 % 3, 2 * node[2] + i % 3};
+        if (points_[finer].leafIndex({8 * at[0], 8 * at[1], 8 * at[2]}) >= 0) return true;
+    }
+    return false;
+}
+
+// Finds the faces of cell c in one direction: one, or up to four where the cells across are finer along the face; none
+// that nobody asked for.
 int LatticeMesh::Reader::neighbours(int level, const Index3& c, int direction) {
     const auto axis = static_cast<std::size_t>(direction >> 1);
     const int side = direction & 1;
@@ -91,6 +116,7 @@ int LatticeMesh::Reader::neighbours(int level, const Index3& c, int direction) {
         face.kind = FaceKind::side;
         face.side = static_cast<std::uint8_t>(direction);
     } else if (const std::int64_t rank = kept_[static_cast<std::size_t>(level)].rank(n); rank >= 0) {
+        if (rank <= above_) return 0;
         face.other = rank;
     } else if (hasCell(level, n)) {
         face.kind = FaceKind::front;
@@ -128,9 +154,11 @@ int LatticeMesh::Reader::piecesAcross(int level, const Index3& c, std::size_t ax
             piece.low[b] += 2 * (q & 1), piece.low[d] += 2 * (q >> 1);
             piece.high = piece.low;
             piece.high[b] += 2 * nb, piece.high[d] += 2 * nd;
+            const std::int64_t other = kept_[m].rank(n);
+            if (other >= 0 && other <= above_) break;
             CellFace& face = found_[static_cast<std::size_t>(count++)];
             face = CellFace{};
-            face.other = kept_[m].rank(n);
+            face.other = other;
             face.kind = face.other >= 0 ? FaceKind::internal : FaceKind::front;
             face.level = static_cast<std::uint8_t>(std::max(own.finest(), theirs.finest()));
             fill(face, level, piece);
@@ -154,6 +182,7 @@ void LatticeMesh::Reader::fill(CellFace& face, int level, const Piece& piece) {
         const std::size_t k = piece.side ? i : (4 - i) % 4, next = piece.side ? (i + 1) % 4 : (7 - i) % 4;
         const Index3 v = corner(k), w = corner(next);
         addVertex(face, level, piece, v);
+        if (!hasFiner_) continue;
         addVertex(face, level, piece, {(v[0] + w[0]) / 2, (v[1] + w[1]) / 2, (v[2] + w[2]) / 2});
     }
 }
@@ -161,7 +190,7 @@ void LatticeMesh::Reader::fill(CellFace& face, int level, const Piece& piece) {
 // Cells that have a point for a corner touch the cell, so their finest level is at most one away from the cell's.
 LatticeMesh::Reader::Spot LatticeMesh::Reader::findPoint(const Index3& at, const LevelTriple& quarter, int finest) {
     Index3 v{};
-    for (int l = std::min(finest + 1, mesh_.pointLevels() - 1); l >= std::max(finest - 1, 0); --l) {
+    for (int l = std::min(hasFiner_ ? finest + 1 : finest, mesh_.pointLevels() - 1); l >= std::max(finest - 1, 0); --l) {
         bool whole = true;
         for (std::size_t a = 0; a < 3; ++a) {
             const int shift = l - quarter[a];
@@ -170,18 +199,21 @@ LatticeMesh::Reader::Spot LatticeMesh::Reader::findPoint(const Index3& at, const
         }
         if (!whole) continue;
         if (const std::int64_t point = points_[static_cast<std::size_t>(l)].rank(v); point >= 0) {
-            return {cell_, static_cast<std::int32_t>(point), frontPoints_[static_cast<std::size_t>(l)].rank(v)};
+            return {node_, static_cast<std::int32_t>(point), static_cast<std::int32_t>(frontPoints_[static_cast<std::size_t>(l)].rank(v))};
         }
     }
-    return {cell_, -1, -1};
+    return {node_, -1, -1};
 }
 
-const LatticeMesh::Reader::Spot& LatticeMesh::Reader::spotAt(int level, const Index3& at) {
-    Spot& spot = spots_[static_cast<std::size_t>(25 * (at[0] - origin_[0]) + 5 * (at[1] - origin_[1]) + at[2] - origin_[2])];
-    if (spot.cell != cell_) {
+LatticeMesh::Reader::Spot LatticeMesh::Reader::spotAt(int level, const Index3& at) {
+    const auto look = [&] {
         const LevelTriple& own = mesh_.levelOf(level);
-        spot = findPoint(at, halvedLevel(halvedLevel(own)), own.finest());
-    }
+        return findPoint(at, halvedLevel(halvedLevel(own)), own.finest());
+    };
+    const int x = at[0] - origin_[0], y = at[1] - origin_[1], z = at[2] - origin_[2];
+    if ((x | y | z) & 1) return look(); // few, where cells are finer across a face
+    Spot& spot = spots_[static_cast<std::size_t>((x / 2 * spotsAlong + y / 2) * spotsAlong + z / 2)];
+    if (spot.node != node_) spot = look();
     return spot;
 }
 

@@ -60,11 +60,12 @@ class LatticeMesh {
     class Reader {
       public:
         explicit Reader(const LatticeMesh& mesh);
-        // visit(const CellFace&) for every face of the kept cell, in fixed order.
+        // visit(const CellFace&) for every face of the kept cell, in fixed order; of the internal ones only those to cells
+        // whose number is above `above`.
         template <class Visit>
-        void faces(int level, const Index3& c, const Visit& visit) {
-            ++cell_;
-            origin_ = {4 * c[0], 4 * c[1], 4 * c[2]};
+        void faces(int level, const Index3& c, const Visit& visit, std::int64_t above = -1) {
+            enter(level, c);
+            above_ = above;
             for (int direction = 0; direction < 6; ++direction) {
                 const int n = neighbours(level, c, direction);
                 for (int i = 0; i < n; ++i) visit(found_[static_cast<std::size_t>(i)]);
@@ -90,13 +91,16 @@ class LatticeMesh {
         bool hasCell(int level, const Index3& c) { return cells_[static_cast<std::size_t>(level)].isValueOn(toCoord(c)); }
         void fill(CellFace& face, int level, const Piece& piece);
         void addVertex(CellFace& face, int level, const Piece& piece, const Index3& at);
-        // What is at a place in quarters of a cell's edges, seen from the cell: looked up once, used by several faces.
+        // What is at a place in quarters of a cell's edges: looked up once a node of the mask, used by the faces of up to
+        // eight cells.
         struct Spot {
-            std::uint32_t cell = 0;   // running number of the cell it was looked up for
+            std::uint32_t node = 0;   // running number of the node it was looked up for
             std::int32_t point = -1;  // -1: no point there
-            std::int64_t front = -1;  // index of its FrontPoint; -1: not on the front
+            std::int32_t front = -1;  // index of its FrontPoint; -1: not on the front
         };
-        const Spot& spotAt(int level, const Index3& at);
+        void enter(int level, const Index3& c);
+        bool mayHaveFiner(int level, const Index3& node);
+        Spot spotAt(int level, const Index3& at);
         Spot findPoint(const Index3& at, const LevelTriple& quarter, int finest);
 
         const LatticeMesh& mesh_;
@@ -105,9 +109,15 @@ class LatticeMesh {
         std::vector<MaskReader> cells_;
         VertexLookup lookup_;
         std::array<CellFace, 4> found_{};
-        std::array<Spot, 125> spots_{};
-        std::uint32_t cell_ = 0;
-        Index3 origin_{};        // of the cell, in quarters of its edges
+        bool isCubes_ = false;
+        static constexpr int spotsAlong = 17; // of a node: at the corners of its cells and halfway between
+        std::vector<Spot> spots_;
+        std::uint32_t node_ = 0;
+        bool hasFiner_ = true;   // points finer than the node's cells may lie in it
+        int nodeLevel_ = -1;
+        Index3 nodeAt_{};        // its first cell / 8
+        Index3 origin_{};        // of the node, in quarters of its cells' edges
+        std::int64_t above_ = -1;
     };
 
   private:
