@@ -29,20 +29,37 @@ struct Progress {
 
 void mark(std::uint8_t& flag) { std::atomic_ref<std::uint8_t>(flag).store(1, std::memory_order_relaxed); } // all set the same
 
-// Nodes of bad corners step back by `step`. Only corners with a node that has moved since the last round are judged
-// again, each at the first such node. Gives whether any changed.
-bool stepBackBad(const Band& band, const std::vector<Vec3>& x, double limit, double step, Progress& progress) {
+// Marks the nodes of bad corners. Only corners with a node that has moved since the last round are judged again: where
+// many have, all corners in turn, else those of the nodes that have, each at the first such node.
+std::vector<std::uint8_t> nodesOfBadCorners(const Band& band, const std::vector<Vec3>& x, double limit, const Progress& progress) {
     std::vector<std::uint8_t> bad(band.nodes(), 0);
+    const auto isMoved = [&](std::int32_t m) { return static_cast<std::size_t>(m) < band.movable && progress.moved[static_cast<std::size_t>(m)]; };
+    const auto judge = [&](const Corner& corner) {
+        if (!(cornerEnergy(corner, x) > limit)) return;
+        for (std::int32_t m : corner.node) mark(bad[static_cast<std::size_t>(m)]);
+    };
+    const std::ptrdiff_t moved = std::count(progress.moved.begin(), progress.moved.end(), std::uint8_t(1));
+    if (static_cast<std::size_t>(moved) > band.movable / 8) {
+        parallelFor(band.corners.size(), [&](std::size_t c) {
+            const Corner& corner = band.corners[c];
+            if (std::any_of(corner.node.begin(), corner.node.end(), isMoved)) judge(corner);
+        }, 1024);
+        return bad;
+    }
     parallelFor(band.movable, [&](std::size_t n) {
         if (!progress.moved[n]) return;
-        const auto isMoved = [&](std::int32_t m) { return static_cast<std::size_t>(m) < band.movable && progress.moved[static_cast<std::size_t>(m)]; };
         for (std::int32_t c : band.cornersOf[n]) {
             const Corner& corner = band.corners[static_cast<std::size_t>(c)];
             const std::int32_t first = *std::find_if(corner.node.begin(), corner.node.end(), isMoved);
-            if (static_cast<std::size_t>(first) != n || !(cornerEnergy(corner, x) > limit)) continue;
-            for (std::int32_t m : corner.node) mark(bad[static_cast<std::size_t>(m)]);
+            if (static_cast<std::size_t>(first) == n) judge(corner);
         }
     });
+    return bad;
+}
+
+// Nodes of bad corners step back by `step`. Gives whether any changed.
+bool stepBackBad(const Band& band, const std::vector<Vec3>& x, double limit, double step, Progress& progress) {
+    const std::vector<std::uint8_t> bad = nodesOfBadCorners(band, x, limit, progress);
     std::uint8_t changed = 0;
     parallelFor(band.movable, [&](std::size_t n) {
         if (!bad[n] || progress.alpha[n] <= 0) return;

@@ -149,6 +149,11 @@ bool pathsStayFree(const Band& band, const SurfaceIndex& index, const std::vecto
     return true;
 }
 
+// Nodes of one colour have no corner in common: what the next one needs is seldom near what this one has.
+void fetchCorners(const Band& band, std::size_t n) {
+    for (std::int32_t c : band.cornersOf[n]) __builtin_prefetch(&band.corners[static_cast<std::size_t>(c)]);
+}
+
 } // namespace
 
 std::vector<std::int32_t> colourNodes(const Band& band, const std::vector<std::uint8_t>& wanted, std::int32_t& colours) {
@@ -196,6 +201,7 @@ bool minimiseEnergy(const Band& band, const SurfaceIndex& index, const FeatureIn
                 LocalCorners corners;
                 for (std::size_t i = begin; i < end; ++i) {
                     const std::size_t n = group[i];
+                    if (i + 1 < end) fetchCorners(band, group[i + 1]);
                     corners.gather(band, n, x);
                     if (corners.empty()) continue;
                     WallTerm wall;

@@ -53,8 +53,10 @@ std::array<Crossing, 2> stepOf(const Band& band, const SurfaceIndex& index, cons
     const double h = std::max(band.h[a], band.h[b]);
     const Vec3 fluid = (x[static_cast<std::size_t>(band.frontNode[a])] + x[static_cast<std::size_t>(band.frontNode[b])]) * 0.5;
     const Vec3 middle = (x[a] + x[b]) * 0.5;
+    const ClosestPoint near = index.closest(middle, steps * h); // most are: what they stand on matters to the others alone
+    if (near && near.distance < steps * h) return found;
     const Foot riser = footAt(index, middle, fluid, h);
-    if (!riser.found || norm(riser.point - middle) < steps * h) return found;
+    if (!riser.found) return found;
     if (turns(feet[a], riser)) found[0] = crossingAt(band, features, x, lineBetween(index, features, feet[a], riser, fluid, h), p);
     if (turns(feet[b], riser)) found[1] = crossingAt(band, features, x, lineBetween(index, features, feet[b], riser, fluid, h), q);
     return found;

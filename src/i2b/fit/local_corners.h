@@ -14,6 +14,7 @@ struct LanePair { // the compiler's vectors, as a type of our own
     Register v;
     LanePair() = default;
     explicit LanePair(double s) : v{s, s} {}
+    LanePair(double a, double b) : v{a, b} {}
     explicit LanePair(const Register& r) : v(r) {}
     double operator[](std::size_t i) const { return v[i]; }
     void set(std::size_t i, double s) { v[i] = s; }
@@ -89,11 +90,7 @@ class LocalCorners {
         LanePair weight;
         LanePair det, trace, root, inverse; // where energy() was asked for last: D, trace, D^(1/3), 1 / D
     };
-    struct Raw {               // of two corners, by lanes
-        double p[4][3][2], w[3][2], role[2], weight[2];
-    };
     std::size_t count_ = 0;
-    std::vector<Raw> raw_;
     std::vector<Pair> pairs_;
 };
 
@@ -101,29 +98,24 @@ inline void LocalCorners::gather(const Band& band, std::size_t node, const std::
     const std::span<const std::int32_t> corners = band.cornersOf[node];
     count_ = corners.size();
     const std::size_t pairs = (count_ + 1) / 2;
-    if (raw_.size() < pairs) raw_.resize(pairs), pairs_.resize(pairs);
+    if (pairs_.size() < pairs) pairs_.resize(pairs);
     const auto self = static_cast<std::int32_t>(node);
-    for (std::size_t i = 0; i < 2 * pairs; ++i) {
-        Raw& raw = raw_[i / 2];
-        const std::size_t lane = i % 2;
-        const Corner& c = band.corners[static_cast<std::size_t>(corners[std::min(i, count_ - 1)])]; // the last fills up
-        for (std::size_t k = 0; k < 4; ++k) {
-            const Vec3& p = x[static_cast<std::size_t>(c.node[k])];
-            raw.p[k][0][lane] = p.x, raw.p[k][1][lane] = p.y, raw.p[k][2][lane] = p.z;
-        }
-        for (std::size_t k = 0; k < 3; ++k) raw.w[k][lane] = double(c.inverseLength[k]);
-        raw.role[lane] = (c.node[1] == self) + 2 * (c.node[2] == self) + 3 * (c.node[3] == self);
-        raw.weight[lane] = i < count_ ? double(c.weight) : 0;
-    }
-    const auto load = [](const double (&from)[2]) { return LanePair(LanePair::Register{from[0], from[1]}); };
-    const auto loadVec = [&](const double (&from)[3][2]) { return LaneVec3{load(from[0]), load(from[1]), load(from[2])}; };
+    const auto roleOf = [&](const Corner& c) { return double((c.node[1] == self) + 2 * (c.node[2] == self) + 3 * (c.node[3] == self)); };
     for (std::size_t i = 0; i < pairs; ++i) {
-        const Raw& raw = raw_[i];
+        // The last one fills up, without weight.
+        const Corner& a = band.corners[static_cast<std::size_t>(corners[2 * i])];
+        const Corner& b = band.corners[static_cast<std::size_t>(corners[std::min(2 * i + 1, count_ - 1)])];
+        const auto place = [&](std::size_t k) {
+            const Vec3 &p = x[static_cast<std::size_t>(a.node[k])], &q = x[static_cast<std::size_t>(b.node[k])];
+            return LaneVec3{LanePair(p.x, q.x), LanePair(p.y, q.y), LanePair(p.z, q.z)};
+        };
+        const auto inverse = [&](std::size_t k) { return LanePair(double(a.inverseLength[k]), double(b.inverseLength[k])); };
         Pair& c = pairs_[i];
-        const LaneVec3 p0 = loadVec(raw.p[0]);
-        c.e0 = loadVec(raw.p[1]) - p0, c.e1 = loadVec(raw.p[2]) - p0, c.e2 = loadVec(raw.p[3]) - p0;
-        c.w0 = load(raw.w[0]), c.w1 = load(raw.w[1]), c.w2 = load(raw.w[2]);
-        c.role = load(raw.role), c.weight = load(raw.weight);
+        const LaneVec3 p0 = place(0);
+        c.e0 = place(1) - p0, c.e1 = place(2) - p0, c.e2 = place(3) - p0;
+        c.w0 = inverse(0), c.w1 = inverse(1), c.w2 = inverse(2);
+        c.role = LanePair(roleOf(a), roleOf(b));
+        c.weight = LanePair(double(a.weight), 2 * i + 1 < count_ ? double(b.weight) : 0);
         const LanePair volume = c.w0 * c.w1 * c.w2;
         const LaneVec3 g0 = cross(c.e1, c.e2) * volume, g1 = cross(c.e2, c.e0) * volume, g2 = cross(c.e0, c.e1) * volume;
         c.det0 = dot(g0, c.e0);
