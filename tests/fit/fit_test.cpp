@@ -1,6 +1,6 @@
 // Proves: no step of the fit inverts a corner; the energy falls, ends where its gradient is nought and its
 // gradient is the one that finite differences give; the exact snap keeps the floor; the domain's sides stay
-// planes to the last bit.
+// planes to the last bit; the front stands off as far as layers want.
 #include "carve/kept_checks.h"
 #include "i2b/carve/carve.h"
 #include "i2b/fit/fit.h"
@@ -160,6 +160,32 @@ TEST(Energy, SingleNodesEndWhereTheGradientVanishes) {
     }
     EXPECT_GE(tried, 20);
     EXPECT_GE(still, tried * 9 / 10);
+}
+
+// Where layers want more room than the fit leaves by itself, the front stands farther from the wall, and the wall stays
+// where it was.
+TEST(FitFront, LeavesTheRoomThatLayersWant) {
+    const auto meanRoom = [](const WantedRoom& wanted, std::size_t& onWall) {
+        double sum = 0;
+        std::size_t n = 0;
+        forSettings(1, [&](Setting& s, unsigned seed) {
+            const FeatureGraph graph = buildFeatureGraph(s.painted.soup, FeatureOptions{});
+            fitFront(s.front, s.lattice, *s.painted.index, graph, FitOptions{}, Context(), wanted);
+            EXPECT_EQ(s.front.validate(), "") << "seed " << seed;
+            for (std::size_t v = 0; v < s.front.front.size(); ++v, ++n) {
+                const Vec3 b = s.front.wall(v);
+                sum += norm(s.front.front[v] - b) / s.front.h[v];
+                onWall += s.painted.index->closest(b).distance < 0.01 * s.front.h[v];
+            }
+        });
+        return sum / static_cast<double>(n);
+    };
+    std::size_t onWall = 0, onWallToo = 0;
+    const double plain = meanRoom({}, onWall), high = meanRoom({0, 0.6}, onWallToo);
+    EXPECT_GT(high, plain + 0.15);
+    EXPECT_GT(static_cast<double>(onWallToo), 0.95 * static_cast<double>(onWall));
+    std::size_t same = 0;
+    EXPECT_EQ(meanRoom({1e-9, 0.01}, same), plain); // enough anyway
 }
 
 // Where the geometry runs through the domain's sides, all that lay in a side still does, exactly.

@@ -33,6 +33,15 @@ TEST(LayerPlan, TwoGiveTheThird) {
     EXPECT_NEAR(thicknessOf(solved(1, 0.5, 0, 0)), 0.5, 1e-12);
 }
 
+// 1 + 1.5 + 2.25 + 3.375, and as much as the last once more for the cell over them.
+TEST(LayerPlan, WantsRoomForItsLayersAndACellOverThem) {
+    EXPECT_NEAR(solved(4, 1e-3, 0, 1.5).room(), 11.5e-3, 1e-12);
+    EXPECT_EQ(solved(3, 0, 0, 1.3).room(), 0); // they take what there is
+    LayerPlan none;
+    none.count = 0, none.first = 1;
+    EXPECT_EQ(none.room(), 0);
+}
+
 TEST(LayerPlan, ContradictionsAreFound) {
     EXPECT_THAT(faultOf({4, 1e-3, 0.02, 1.5}), HasSubstr("0.008125 thick, not 0.02"));
     EXPECT_EQ(faultOf({4, 1e-3, 8.15e-3, 1.5}), ""); // within a hundredth

@@ -26,8 +26,8 @@ struct WallPlans {
     std::vector<std::string> notes;          // rules that mean no part
 };
 // Throws Error(usage) where a name is no regular expression or there are more than 65535 rules.
-WantedRoom roomWanted(const WallPlans& plans);
 WallPlans plansOf(const LayerOptions& options, const std::vector<Part>& parts);
+WantedRoom roomWanted(const WallPlans& plans); // by the plan that wants most
 
 // Points of a vertex run from the front, which is a point of the kept cells and not counted, to the wall; cells of a face
 // from the front to the wall too.
