@@ -9,6 +9,8 @@ namespace i2b::test {
 namespace {
 
 const Vec3 half{1, 0.8, 0.6};           // m, of the boxes
+const Vec3 plateHalf{0.65, 0.45, 0.2};  // m, of plateInTop()
+constexpr double plateTurn = 0.13;      // radians
 constexpr double borderX0 = 0.03, borderX1 = 0.31; // m, of flushHalves() at the low and the high end in y
 
 void addPart(Surface& soup, const samples::Mesh& mesh, const char* name) {
@@ -96,6 +98,24 @@ Surface flushHalves() {
     addPart(soup, left, "left");
     addPart(soup, right, "right");
     return soup;
+}
+
+Surface plateInTop(double rise) {
+    samples::Mesh plate = samples::box(-plateHalf, {plateHalf.x, plateHalf.y, rise});
+    for (Vec3& p : plate.points) p = {p.x * std::cos(plateTurn) - p.y * std::sin(plateTurn), p.x * std::sin(plateTurn) + p.y * std::cos(plateTurn), p.z + half.z};
+    Surface soup;
+    addPart(soup, samples::box(-half, half), "block");
+    addPart(soup, plate, "plate");
+    return soup;
+}
+
+std::array<Vec3, 4> plateFoot() {
+    std::array<Vec3, 4> foot;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const double x = (i == 1 || i == 2 ? 1 : -1) * plateHalf.x, y = (i < 2 ? -1 : 1) * plateHalf.y;
+        foot[i] = {x * std::cos(plateTurn) - y * std::sin(plateTurn), x * std::sin(plateTurn) + y * std::cos(plateTurn), half.z};
+    }
+    return foot;
 }
 
 ToFront::ToFront(const Surface& soup, const Options& options)

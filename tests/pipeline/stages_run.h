@@ -17,6 +17,10 @@ Surface turnedBox();
 // borderSide() is 0.
 Surface flushHalves();
 double borderSide(const Vec3& p); // m, signed
+// A box of about that size along the axes with a plate of 1.3 x 0.9 m let into its top, turned by an odd angle about the z
+// axis: part 1, which rises by so much above it, m. The corners of its outline on the top.
+Surface plateInTop(double rise);
+std::array<Vec3, 4> plateFoot();
 
 // Up to the front.
 struct ToFront {

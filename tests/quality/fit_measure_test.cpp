@@ -216,6 +216,43 @@ TEST(FitMeasure, bordersOfWhatStandsOnOrPassesThrough) {
     EXPECT_NEAR(double(with({{0.25, 0.52, 1.2}, {0.75, 0.52, 1.2}, {0.75, 0.52, 0.6}, {0.25, 0.52, 0.6}}, {{0, 1, 2}, {0, 2, 3}})), 4 * 0.5 * n, 2);
 }
 
+// The box with its top, and triangles of a third part.
+Surface withThird(const std::vector<Vec3>& corners, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+    Surface s = boxOfTwo(1 - 1e-6);
+    const auto first = static_cast<std::uint32_t>(s.points.size());
+    s.points.insert(s.points.end(), corners.begin(), corners.end());
+    s.parts.push_back({"third", "", triangles.size()});
+    for (const auto& t : triangles) {
+        s.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+        s.partOf.push_back(2);
+    }
+    return s;
+}
+
+// Of two sheets upon each other the mesh can show only one: a copy of the top asks for no patch of its own, and neither do
+// its edges upon what it copies.
+TEST(FitMeasure, bordersOfCopiesAreThoseOfTheOriginal) {
+    const PolyMesh mesh = cubeWall([](Vec3 p) { return p; });
+    const std::int64_t without = fit(mesh, boxOfTwo(1 - 1e-6)).borderSamples;
+    const FitReport r = fit(mesh, withThird({{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}, {{0, 2, 1}, {0, 3, 2}}));
+    EXPECT_GE(r.borderSamples, without);
+    EXPECT_DOUBLE_EQ(r.partBorderFraction, 1);
+    const FitReport patch = fit(mesh, withThird({{0.3, 0.3, 1}, {0.7, 0.3, 1}, {0.7, 0.7, 1}, {0.3, 0.7, 1}}, {{0, 2, 1}, {0, 3, 2}}));
+    EXPECT_EQ(patch.borderSamples, without);
+    EXPECT_DOUBLE_EQ(patch.partBorderFraction, 1);
+}
+
+// What stands on the far side of a sheet is not seen, though its foot lies in the sheet: the flow sees the sheet on both sides.
+TEST(FitMeasure, bordersOfWhatIsHiddenAreNotAskedFor) {
+    const PolyMesh mesh = cubeWall([](Vec3 p) { return p; });
+    const std::int64_t without = fit(mesh, boxOfTwo(1 - 1e-6)).borderSamples;
+    const auto fin = [&](double tip) {
+        return fit(mesh, withThird({{0.25, 0.52, 1}, {0.75, 0.52, 1}, {0.75, 0.52, tip}, {0.25, 0.52, tip}}, {{0, 1, 2}, {0, 2, 3}})).borderSamples;
+    };
+    EXPECT_NEAR(double(fin(0.6) - without), 4 * 0.5 * n, 2);
+    EXPECT_EQ(fin(1.4), without);
+}
+
 // A line of many short edges is sampled like one long edge: by length, not by edge.
 TEST(FitMeasure, samplesByLength) {
     Surface s = box(1);

@@ -10,6 +10,9 @@ const double smallestTurn = std::cos(25 * degree);
 const double confirmedTurn = std::cos(35 * degree);
 constexpr double besideLine = 0.25; // of h: steps off a line along the planes that meet in it
 constexpr double roundedOff = 0.25; // of h: so far from the geometry two planes may meet where an edge is rounded
+constexpr double atMeeting = 0.1;   // of h: so near to where two planes meet a sharp edge is the one there
+constexpr double flush = 0.15;      // of h: the way over a higher step,
+constexpr double halfway = 0.1;     // of h: where it is so far off the geometry, changes parts halfway between its sides, not at a border
 
 // The line in which the tangent planes of two feet meet, looked at again on the geometry three times.
 FeatureIndex::Line implicitLine(const SurfaceIndex& index, Foot a, Foot b, const Vec3& fluid, double h) {
@@ -41,8 +44,9 @@ FeatureIndex::Line implicitLine(const SurfaceIndex& index, Foot a, Foot b, const
     return line;
 }
 
-// Where the nearest part changes on the way from a foot of one part to a place of another; none if it does not.
-bool partChange(const SurfaceIndex& index, const Foot& from, Vec3 to, Vec3& place) {
+// Where the nearest part changes on the way from a foot of one part to a place of another, and how far off that the way is;
+// none if it does not.
+bool partChange(const SurfaceIndex& index, const Foot& from, Vec3 to, double& off, Vec3& place) {
     const auto isOwn = [&](const Vec3& p) {
         const ClosestPoint c = index.closest(p);
         return c && static_cast<std::uint32_t>(index.surface().partOf[c.triangle]) == from.part;
@@ -53,7 +57,8 @@ bool partChange(const SurfaceIndex& index, const Foot& from, Vec3 to, Vec3& plac
         const Vec3 middle = (own + to) * 0.5;
         (isOwn(middle) ? own : to) = middle;
     }
-    place = index.closest((own + to) * 0.5).point;
+    const ClosestPoint change = index.closest((own + to) * 0.5);
+    place = change.point, off = change.distance;
     return true;
 }
 
@@ -90,19 +95,31 @@ Between lineBetween(const SurfaceIndex& index, const FeatureIndex& features, con
     return {implicitLine(index, a, b, fluid, h), SnapKind::implicitLine};
 }
 
+Between lineUnder(const SurfaceIndex& index, const FeatureIndex& features, const Foot& ground, const Foot& riser, const Vec3& fluid, double h) {
+    const Vec3 down = cross(cross(ground.normal, riser.normal), riser.normal); // in the riser's plane, across the line
+    const double slope = dot(ground.normal, down);
+    if (slope == 0) return {};
+    const Vec3 meeting = riser.point - down * (dot(ground.normal, riser.point - ground.point) / slope);
+    const FeatureIndex::Line line = features.closestLine(meeting, atMeeting * h);
+    if (line.found) return {line, SnapKind::line};
+    return {implicitLine(index, ground, riser, fluid, h), SnapKind::implicitLine};
+}
+
 Between borderBetween(const SurfaceIndex& index, const Foot& a, const Foot& b, double h) {
     const auto isNear = [&](const Foot& foot, std::uint32_t part) {
         return bool(index.closest(foot.point, 0.05 * h, [&](std::uint32_t t) { return static_cast<std::uint32_t>(index.surface().partOf[t]) == part; }));
     };
     Between border;
-    if (isNear(a, b.part) || isNear(b, a.part) || !partChange(index, a, b.point, border.line.point)) return border;
+    double off = 0;
+    if (isNear(a, b.part) || isNear(b, a.part) || !partChange(index, a, b.point, off, border.line.point)) return border;
+    if (off > halfway * h && std::abs(dot(normalized(a.normal + b.normal), b.point - a.point)) > flush * h) return border;
     // The border's direction from a second place on it, a little to the side.
     const Vec3 across = normalized(cross(a.normal, b.point - a.point)) * (0.25 * h);
     Foot beside = a;
     beside.point += across;
     Vec3 second;
     border.line.tangent = normalized(across);
-    if (partChange(index, beside, b.point + across, second) && norm(second - border.line.point) < h) border.line.tangent = normalized(second - border.line.point);
+    if (partChange(index, beside, b.point + across, off, second) && norm(second - border.line.point) < h) border.line.tangent = normalized(second - border.line.point);
     border.line.found = border.line.tangent != Vec3{};
     border.kind = SnapKind::implicitLine;
     return border;

@@ -29,6 +29,9 @@ struct Between {
 // meet, if the geometry confirms it. h: m, size of the cells around; fluid: a place in the fluid near by.
 Between lineBetween(const SurfaceIndex& index, const FeatureIndex& features, const Foot& a, const Foot& b, const Vec3& fluid, double h);
 
+// The feature at the foot of a riser, where its plane meets that of what it stands on: no other one near by.
+Between lineUnder(const SurfaceIndex& index, const FeatureIndex& features, const Foot& ground, const Foot& riser, const Vec3& fluid, double h);
+
 // The border between two parts that lie flush; none where they lie upon each other.
 Between borderBetween(const SurfaceIndex& index, const Foot& a, const Foot& b, double h);
 

@@ -12,10 +12,14 @@ constexpr double degree = 3.14159265358979323846 / 180;
 const double smallestTurn = std::cos(25 * degree);
 const double flatCorner = std::cos(140 * degree), thinCorner = std::cos(12 * degree);
 constexpr double steps = 0.08;      // of h: a wall edge whose middle is farther off than this cuts across something
+constexpr double bridged = 0.04;    // of h: the same beside a line, where an edge bridges a corner
 constexpr double onLine = 0.05;   // of h: so far from a sharp edge the middle of a cut may be
 const double alongLine = std::cos(20 * degree);
 constexpr double onGeometry = 0.3; // of h: so far the geometry may bend away from a line along its tangent
 constexpr double reach = 2.2; // of h: no node is pulled farther to a feature
+constexpr double apart = 0.2; // of h: nodes beside each other keep so far apart
+constexpr double linesApart = 0.3; // of h: and so do lines beside each other to have a node each
+constexpr double nextReach = 0.3;  // of h: so far a node is pulled to a line beside the one that its neighbour is on
 
 struct Crossing {
     double distance = 0; // in h
@@ -60,6 +64,27 @@ std::array<Crossing, 2> stepOf(const Band& band, const SurfaceIndex& index, cons
     if (turns(feet[a], riser)) found[0] = crossingAt(band, features, x, lineBetween(index, features, feet[a], riser, fluid, h), p);
     if (turns(feet[b], riser)) found[1] = crossingAt(band, features, x, lineBetween(index, features, feet[b], riser, fluid, h), q);
     return found;
+}
+
+// A wall edge from a node on its line to a free one that bridges a corner between the two, as at the foot of a step lower
+// than a cell: the free end has a line of its own between itself and the riser that the edge sees on its way.
+Crossing besideLine(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x, const Foot& foot,
+                    const Snap& held, std::int32_t holder, std::int32_t free) {
+    const auto a = static_cast<std::size_t>(holder), b = static_cast<std::size_t>(free);
+    if (held.kind == SnapKind::corner || !foot.found) return {};
+    const double h = std::max(band.h[a], band.h[b]);
+    const FeatureIndex::Line own = snapLine(index, features, held, x[a], h);
+    const Vec3 fluid = (x[static_cast<std::size_t>(band.frontNode[a])] + x[static_cast<std::size_t>(band.frontNode[b])]) * 0.5;
+    for (const double share : {0.5, 0.25}) {
+        const Vec3 way = own.point + (x[b] - own.point) * share;
+        const Foot riser = footAt(index, way, fluid, h);
+        if (!riser.found || norm(riser.point - way) < bridged * h || !turns(foot, riser)) continue;
+        const Crossing c = crossingAt(band, features, x, lineUnder(index, features, foot, riser, fluid, h), free);
+        if (c.node < 0 || c.distance > nextReach) continue;
+        const Vec3 off = c.snap.point - own.point;
+        if (norm(off - own.tangent * dot(off, own.tangent)) > linesApart * h) return c;
+    }
+    return {};
 }
 
 bool hangs(const Band& band, std::size_t wall) { return !band.parents[static_cast<std::size_t>(band.frontNode[wall])].empty(); }
@@ -165,8 +190,12 @@ std::size_t snapToFeatures(const Band& band, const Front& front, const SurfaceIn
         const auto he = front.mesh.halfedge_handle(FrontMesh::EdgeHandle(static_cast<int>(e)), 0);
         const std::int32_t p = front.mesh.from_vertex_handle(he).idx(), q = front.mesh.to_vertex_handle(he).idx();
         const auto a = static_cast<std::size_t>(p), b = static_cast<std::size_t>(q);
-        if (snaps[a].kind != SnapKind::none || snaps[b].kind != SnapKind::none) return;
-        if (hangs(band, a) || hangs(band, b)) return;
+        const bool heldA = snaps[a].kind != SnapKind::none, heldB = snaps[b].kind != SnapKind::none;
+        if ((heldA && heldB) || hangs(band, a) || hangs(band, b)) return;
+        if (heldA || heldB) {
+            crossings[2 * e] = heldA ? besideLine(band, index, features, x, feet[b], snaps[a], p, q) : besideLine(band, index, features, x, feet[a], snaps[b], q, p);
+            return;
+        }
         if (turns(feet[a], feet[b])) {
             const Vec3& fluid = x[static_cast<std::size_t>(band.frontNode[a])];
             crossings[2 * e] = crossingOf(band, features, x, lineBetween(index, features, feet[a], feet[b], fluid, std::max(band.h[a], band.h[b])), p, q);
@@ -179,9 +208,16 @@ std::size_t snapToFeatures(const Band& band, const Front& front, const SurfaceIn
     });
     std::erase_if(crossings, [](const Crossing& c) { return c.node < 0; });
     std::stable_sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) { return a.distance < b.distance; });
+    const auto isTaken = [&](const Crossing& c) {
+        const std::span<const BandEdge> edges = band.edges[static_cast<std::size_t>(c.node)];
+        return std::any_of(edges.begin(), edges.end(), [&](const BandEdge& edge) {
+            const auto m = static_cast<std::size_t>(edge.b);
+            return m < band.walls && snaps[m].kind != SnapKind::none && norm(snaps[m].point - c.snap.point) < apart * band.h[m];
+        });
+    };
     for (const Crossing& c : crossings) {
         Snap& snap = snaps[static_cast<std::size_t>(c.node)];
-        if (snap.kind != SnapKind::none || (c.other >= 0 && snaps[static_cast<std::size_t>(c.other)].kind != SnapKind::none)) continue;
+        if (snap.kind != SnapKind::none || (c.other >= 0 && snaps[static_cast<std::size_t>(c.other)].kind != SnapKind::none) || isTaken(c)) continue;
         snap = c.snap;
         ++added;
     }

@@ -10,6 +10,9 @@ namespace {
 
 constexpr double nearEnd = 0.12;     // of an edge: crossings nearer to an end are that node's own business
 constexpr double farOff = 0.6;       // of an edge: crossings farther from it belong to another one
+constexpr double nearStar = 0.2;     // of h: crossings nearer to an end that stands on another line are left
+constexpr double follows = 0.2;      // of h: so near to a line what a cut along it ends at may be
+constexpr double bridged = 0.04;     // of h: an edge whose places are farther off the geometry bridges a corner
 constexpr double onLine = 0.05;      // of h: a snapped node so near to its line stands on it
 constexpr double upon = 0.02;        // of h: a node so near to two parts stands on their border
 constexpr double worstCorner = 0.03; // scaled Jacobian that a piece of a prism must have
@@ -20,6 +23,8 @@ struct Candidate {
     double t = 0;
     Vec3 front, wall;                       // m
     bool alive = true;
+    bool beside = false;                    // an end of the edge stands on another line
+    Vec3 tangent;                           // unit, of the line or border
 };
 
 struct Place { // a vertex of a face that may be cut
@@ -46,6 +51,8 @@ class Inserter {
     void look();
     Candidate crossingOn(std::int32_t edge) const;
     Between lineOn(std::size_t p, std::size_t q) const;
+    Between lineBeside(std::size_t star, std::size_t free) const;
+    bool runsAlong(const Place& from, const Place& to) const;
     Ring ringOf(std::size_t face) const;
     Cuts cutsOf(std::size_t face) const;
     void divide(const Ring& ring, Cuts& cuts) const;
@@ -97,6 +104,28 @@ Between Inserter::lineOn(std::size_t p, std::size_t q) const {
     return {};
 }
 
+// The line between a node that stands on one itself and a free one: what the edge passes on its way differs from what the
+// free node stands on.
+Between Inserter::lineBeside(std::size_t star, std::size_t free) const {
+    const Foot& foot = feet_[free];
+    if (!foot.found) return {};
+    const double h = std::max(band_.h[star], band_.h[free]);
+    const Vec3 fluid = (x_[std::size_t(band_.frontNode[star])] + x_[std::size_t(band_.frontNode[free])]) * 0.5;
+    for (const double share : {0.5, 0.25}) {
+        const Vec3 way = x_[star] + (x_[free] - x_[star]) * share;
+        Foot passed = footAt(index_, way, fluid, h);
+        if (!passed.found) continue;
+        Between between;
+        if (turns(passed, foot) && norm(passed.point - way) > bridged * h) {
+            between = lineUnder(index_, features_, foot, passed, fluid, h);
+        } else if (!turns(passed, foot) && passed.part != foot.part) {
+            between = borderBetween(index_, passed, foot, h);
+        }
+        if (between.line.found) return between;
+    }
+    return {};
+}
+
 // Where a line comes nearest to a segment: share of the segment's way, place on the line.
 double nearestOn(const FeatureIndex::Line& line, const Vec3& a, const Vec3& b, Vec3& place) {
     const Vec3 d = b - a, w = a - line.point;
@@ -109,29 +138,33 @@ double nearestOn(const FeatureIndex::Line& line, const Vec3& a, const Vec3& b, V
 
 Candidate Inserter::crossingOn(std::int32_t edge) const {
     const auto he = front_.mesh.halfedge_handle(FrontMesh::EdgeHandle(edge), 0);
-    Candidate c{edge, front_.mesh.from_vertex_handle(he).idx(), front_.mesh.to_vertex_handle(he).idx(), 0, {}, {}, false};
+    Candidate c{edge, front_.mesh.from_vertex_handle(he).idx(), front_.mesh.to_vertex_handle(he).idx(), 0, {}, {}, false, false, {}};
     const auto p = static_cast<std::size_t>(c.p), q = static_cast<std::size_t>(c.q);
-    if (star_[p] || star_[q] || (band_.outside[p] & band_.outside[q]) != 0) return c;
+    if ((star_[p] && star_[q]) || (band_.outside[p] & band_.outside[q]) != 0) return c;
     const auto isShared = [&](std::size_t n) { return band_.fansOf[std::size_t(band_.frontNode[n]) - band_.walls].size() > 1; };
     if (isShared(p) && isShared(q)) return c; // another sheet's edge may have the same ends
-    Between between = lineOn(p, q);
+    c.beside = star_[p] || star_[q];
+    Between between = !c.beside ? lineOn(p, q) : star_[p] ? lineBeside(p, q) : lineBeside(q, p);
     if (!between.line.found) return c;
     const Vec3 &a = x_[p], &b = x_[q];
     const double length = norm(b - a);
     c.t = nearestOn(between.line, a, b, c.wall);
-    for (int round = 0; round < 2 && between.kind == SnapKind::line; ++round) {
+    for (int round = 0; round < 2 && between.kind == SnapKind::line && !c.beside; ++round) {
         between.line = features_.closestLine(a + (b - a) * std::clamp(c.t, 0.0, 1.0), length);
         if (!between.line.found) return c;
         c.t = nearestOn(between.line, a, b, c.wall);
     }
-    if (between.kind == SnapKind::line) c.wall = features_.closestLine(a + (b - a) * std::clamp(c.t, 0.0, 1.0), length).point;
+    // Beside another line, that one may be nearer to the edge.
+    if (between.kind == SnapKind::line) c.wall = features_.closestLine(c.beside ? c.wall : a + (b - a) * std::clamp(c.t, 0.0, 1.0), length).point;
     if (!(c.t > nearEnd && c.t < 1 - nearEnd)) return c;
+    c.tangent = between.line.tangent;
     if (between.kind != SnapKind::line) {
         const ClosestPoint on = index_.closest(c.wall, farOff * length);
         if (!on) return c;
         c.wall = on.point;
     }
     if (norm(a + (b - a) * c.t - c.wall) > farOff * length) return c;
+    if (c.beside && norm(c.wall - (star_[p] ? a : b)) < nearStar * band_.h[p]) return c;
     const Vec3 &f = x_[std::size_t(band_.frontNode[p])], &g = x_[std::size_t(band_.frontNode[q])];
     c.front = f + (g - f) * c.t;
     c.alive = !index_.firstHit(c.front, c.wall, 0.97);
@@ -149,8 +182,17 @@ Ring Inserter::ringOf(std::size_t face) const {
     return ring;
 }
 
+// Does the line that an end of a cut lies on, beside another line, lead to the other end?
+bool Inserter::runsAlong(const Place& from, const Place& to) const {
+    if (from.candidate < 0) return false;
+    const Candidate& c = candidates_[std::size_t(from.candidate)];
+    const Vec3 way = wallAt(to) - c.wall;
+    return c.beside && norm(way - c.tangent * dot(way, c.tangent)) < follows * band_.h[std::size_t(c.p)];
+}
+
 // Do nodes at both sides of a cut stand on different sides of a line?
 bool Inserter::differ(const Ring& ring, std::size_t from, std::size_t to) const {
+    if (runsAlong(ring[from], ring[to]) || runsAlong(ring[to], ring[from])) return true;
     for (std::size_t i = from + 1; i < to; ++i) {
         if (ring[i].star) continue;
         const Foot& a = feet_[std::size_t(ring[i].vertex)];

@@ -12,7 +12,8 @@
 // within 0.1 h.
 //
 // Borders: the same along the lines where two parts meet (border_lines.h), of samples that are seen from the flow 0.3 h
-// over the nearest wall; the share that has an edge between the patches of these two parts within 0.1 h.
+// over the nearest wall, one of the parts at either side 0.1 h from the line and none at both; the share that has an edge
+// between the patches of these two parts, or of others that lie upon them there, within 0.1 h.
 //
 // Tilted: of the wall faces whose centre is more than h from every edge of 40 degrees and more, the share
 // whose normal is over 25 (45) degrees off that of the geometry closest to the centre, orientation ignored.

@@ -3,6 +3,7 @@
 #include "i2b/quality/line_capture.h"
 #include <algorithm>
 #include <atomic>
+#include <numbers>
 #include <unordered_map>
 
 namespace i2b {
@@ -11,6 +12,15 @@ namespace {
 constexpr double touching = 0.01; // of h: parts so near to each other touch
 constexpr double inwards = 0.3;   // of the way to the face's centre
 constexpr double overWall = 0.3;  // of h: from so far over the wall a border must be seen
+constexpr double beside = 0.1;    // of h: so far from a border the flow looks for what lies at its two sides
+constexpr int looks = 60;         // of a round about a border
+
+using Corners = std::array<Vec3, 3>;
+
+Corners cornersOf(const Surface& s, std::uint32_t t) {
+    const auto& v = s.triangles[t];
+    return {s.points[v[0]], s.points[v[1]], s.points[v[2]]};
+}
 
 // The part behind each face of the wall; -1 where its patch is not named after one.
 std::vector<std::int32_t> partsOf(const PolyMesh& mesh, const Wall& wall, const Surface& surface) {
@@ -39,6 +49,61 @@ BorderLines patchEdges(const PolyMesh& mesh, const Wall& wall, const std::vector
         borders.parts.push_back({parts.first, parts.second});
     }
     return borders;
+}
+
+// What a border parts, in the plane across it:
+//
+//        flow      from the flow's side the look goes round the border both ways until it meets geometry, here at o. All
+//      ..   ..     parts that touch there are one side: of two sheets upon each other the mesh can show only one.
+//   __o__\/__o__
+using Side = std::vector<std::int32_t>; // parts, ascending
+
+bool has(const Side& side, std::int32_t part) { return std::binary_search(side.begin(), side.end(), part); }
+
+class Sides {
+  public:
+    // Of a place on a border along a unit tangent, seen from a place in the flow. h: m.
+    Sides(const SurfaceIndex& index, const Vec3& place, const Vec3& tangent, const Vec3& flow, double h);
+    bool areOf(const std::array<std::int32_t, 2>& parts) const {
+        return (has(side_[0], parts[0]) && has(side_[1], parts[1])) || (has(side_[0], parts[1]) && has(side_[1], parts[0]));
+    }
+    // Whether a part goes on from one side to the other.
+    bool share() const {
+        return std::any_of(side_[0].begin(), side_[0].end(), [&](std::int32_t part) { return has(side_[1], part); });
+    }
+
+  private:
+    std::array<Side, 2> side_;
+};
+
+Side partsAt(const SurfaceIndex& index, const Vec3& p, double tolerance) {
+    const Surface& s = index.surface();
+    const Vec3 room{tolerance, tolerance, tolerance};
+    Side side;
+    index.any({p - room, p + room}, [&](std::uint32_t t) {
+        const Corners corners = cornersOf(s, t);
+        if (norm(closestPointOnTriangle(p, corners[0], corners[1], corners[2]) - p) <= tolerance) side.push_back(s.partOf[t]);
+        return false;
+    });
+    std::sort(side.begin(), side.end());
+    side.erase(std::unique(side.begin(), side.end()), side.end());
+    return side;
+}
+
+Sides::Sides(const SurfaceIndex& index, const Vec3& place, const Vec3& tangent, const Vec3& flow, double h) {
+    const Vec3 way = flow - place, u = normalized(way - tangent * dot(way, tangent)), v = cross(tangent, u);
+    for (std::size_t i = 0; i < 2; ++i) {
+        Vec3 last = place + u * (beside * h);
+        for (int k = 1; k < looks; ++k) {
+            const double angle = (i == 0 ? 2 : -2) * std::numbers::pi * k / looks;
+            const Vec3 next = place + (u * std::cos(angle) + v * std::sin(angle)) * (beside * h);
+            if (const SegmentHit hit = index.firstHit(last, next)) {
+                side_[i] = partsAt(index, last + (next - last) * hit.t, touching * h);
+                break;
+            }
+            last = next;
+        }
+    }
 }
 
 // Triangles about h/2 and less from wall faces that have more than one part so near; a few faces that follow each other,
@@ -82,14 +147,24 @@ void measurePartBorders(const PolyMesh& mesh, const SurfaceIndex& index, const s
     std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
     const BorderLines borders = borderLines(index, nearBorders(mesh, wall, index), touching * sizes[sizes.size() / 2]);
     const SurfaceIndex lineIndex(borders.lines), patchIndex(patches.lines);
-    const auto isSeen = [&](const Vec3& p, std::uint32_t, const WallPlace& at) {
+    const auto flowAt = [&](const WallPlace& at) {
         const FaceShape& face = wall.shapes[std::size_t(at.face)]; // over its inside: over its rim may be another part
-        const Vec3 flow = at.point + (face.centre - at.point) * inwards - normalized(face.area) * (overWall * at.h);
+        return at.point + (face.centre - at.point) * inwards - normalized(face.area) * (overWall * at.h);
+    };
+    const auto sidesAt = [&](const Vec3& p, std::uint32_t line, const WallPlace& at) {
+        const auto& t = borders.lines.triangles[line];
+        return Sides(index, p, normalized(borders.lines.points[t[1]] - borders.lines.points[t[0]]), flowAt(at), at.h);
+    };
+    const auto isSeen = [&](const Vec3& p, std::uint32_t line, const WallPlace& at) {
+        const Vec3 flow = flowAt(at);
         const double far = norm(p - flow);
-        return far > 0 && !index.firstHit(flow, p, 1 - touching * at.h / far);
+        if (!(far > 0) || index.firstHit(flow, p, 1 - touching * at.h / far)) return false;
+        const Sides sides = sidesAt(p, line, at);
+        return sides.areOf(borders.parts[line]) && !sides.share();
     };
     const auto isCaptured = [&](const Vec3& p, std::uint32_t line, const WallPlace& at) {
-        return bool(patchIndex.closest(p, 0.1 * at.h, [&](std::uint32_t e) { return patches.parts[e] == borders.parts[line]; }));
+        const Sides sides = sidesAt(p, line, at);
+        return bool(patchIndex.closest(p, 0.1 * at.h, [&](std::uint32_t e) { return sides.areOf(patches.parts[e]); }));
     };
     const LineSamples n = captureLines(mesh, wall, borders.lines, lineIndex, isSeen, isCaptured);
     report.borderSamples = n.samples;
