@@ -77,6 +77,7 @@ Crossing besideLine(const Band& band, const SurfaceIndex& index, const FeatureIn
     const Vec3 fluid = (x[static_cast<std::size_t>(band.frontNode[a])] + x[static_cast<std::size_t>(band.frontNode[b])]) * 0.5;
     for (const double share : {0.5, 0.25}) {
         const Vec3 way = own.point + (x[b] - own.point) * share;
+        if (index.closest(way, bridged * h)) continue; // most are
         const Foot riser = footAt(index, way, fluid, h);
         if (!riser.found || norm(riser.point - way) < bridged * h || !turns(foot, riser)) continue;
         const Crossing c = crossingAt(band, features, x, lineUnder(index, features, foot, riser, fluid, h), free);
