@@ -61,6 +61,20 @@ LayerReport reportOf(const Sample& s, const LayerStack& stack, int requested) {
     return summarize(measureLayers(s.front, stack), s.front, s.parts, requested);
 }
 
+// Two layers and a cell as high; the rule for all counts only while some part has it.
+TEST(Layers, WantRoomForTheHighestRuleThatAPartHas) {
+    LayerOptions all = options(2, 1, 1e-3);
+    all.parts.push_back({"a", 2, 0, 0, 0});
+    all.parts.back().first = 5e-3;
+    const std::vector<Part> both{{"a", "", 1}, {"b", "", 1}};
+    EXPECT_NEAR(roomWanted(plansOf(all, both)).metres, 15e-3, 1e-12);
+    all.parts.back().first = 0.2e-3;
+    EXPECT_NEAR(roomWanted(plansOf(all, both)).metres, 3e-3, 1e-12);
+    EXPECT_NEAR(roomWanted(plansOf(all, {{"a", "", 1}})).metres, 0.6e-3, 1e-12);
+    EXPECT_EQ(roomWanted(plansOf(all, both)).cells, 0);
+    EXPECT_EQ(roomWanted(plansOf(options(3, 1.2), both)).metres, 0); // they fill what there is
+}
+
 TEST(Layers, GrowByTheRatio) {
     const Sample s;
     for (int count : {1, 2, 5, 12}) {

@@ -94,7 +94,9 @@ WallPlans plansOf(const LayerOptions& options, const std::vector<Part>& parts) {
 
 WantedRoom roomWanted(const WallPlans& plans) {
     WantedRoom room;
-    for (const LayerPlan& plan : plans.plans) {
+    for (std::size_t p = 0; p < plans.plans.size(); ++p) {
+        if (!plans.ofPart.empty() && std::find(plans.ofPart.begin(), plans.ofPart.end(), p) == plans.ofPart.end()) continue;
+        const LayerPlan& plan = plans.plans[p];
         double& most = plan.relative ? room.cells : room.metres;
         most = std::max(most, plan.room());
     }
