@@ -1,6 +1,7 @@
 #include "i2b/assemble/assemble.h"
 #include "i2b/assemble/divided_edges.h"
 #include "i2b/core/error.h"
+#include "i2b/front/convex_cells.h"
 #include <algorithm>
 #include <bit>
 #include <fmt/format.h>
@@ -339,10 +340,11 @@ void Assembler::cellData(PolyMesh& mesh) const {
     for (std::int32_t c = 0; c < mesh.cells; ++c) mesh.zones[static_cast<std::size_t>(mesh.cellRegion[static_cast<std::size_t>(c)])].cells.push_back(c);
 }
 
-// Core points where the lattice or the fit has them, then the layers' points, stack by stack.
+// Core points where the lattice (or, at a jump in level, little beside it) or the fit has them, then the layers' points, stack by stack.
 std::vector<Vec3> Assembler::placePoints() const {
     const Front& front = in_.front;
     std::vector<Vec3> points = in_.lattice.latticePoints();
+    raiseMiddles(in_.lattice, points);
     const auto core = static_cast<std::size_t>(corePoints_);
     points.resize(core + in_.layers.points());
     parallelFor(front.movedPoints.size(), [&](std::size_t i) {
