@@ -2,6 +2,7 @@
 #include "i2b/core/parallel.h"
 #include "i2b/fit/between.h"
 #include "i2b/fit/fit.h"
+#include "i2b/fit/front_room.h"
 #include "i2b/front/replace_faces.h"
 #include <algorithm>
 
@@ -11,9 +12,11 @@ namespace {
 constexpr double nearEnd = 0.12;     // of an edge: crossings nearer to an end are that node's own business
 constexpr double farOff = 0.6;       // of an edge: crossings farther from it belong to another one
 constexpr double nearStar = 0.2;     // of h: crossings nearer to an end that stands on another line are left
+constexpr double beforeEnd = 0.85;   // of an edge: where it is beside the line that its end stands on
 constexpr double follows = 0.2;      // of h: so near to a line what a cut along it ends at may be
 constexpr double bridged = 0.04;     // of h: an edge whose places are farther off the geometry bridges a corner
 constexpr double onLine = 0.05;      // of h: a snapped node so near to its line stands on it
+const double alongLine = std::cos(20 * 3.14159265358979323846 / 180);
 constexpr double upon = 0.02;        // of h: a node so near to two parts stands on their border
 constexpr double worstCorner = 0.03; // scaled Jacobian that a piece of a prism must have
 constexpr std::size_t mostVertices = 8; // of a front face
@@ -42,26 +45,34 @@ struct Cuts { // of one face
 
 class Inserter {
   public:
-    Inserter(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x,
-             const std::vector<Snap>& snaps)
-        : front_(front), band_(band), index_(index), features_(features), x_(x), snaps_(snaps) {}
+    Inserter(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features, std::vector<Vec3>& x,
+             const std::vector<Snap>& snaps, const std::vector<Snap>& wishes)
+        : front_(front), band_(band), index_(index), features_(features), x_(x), snaps_(snaps), wishes_(wishes) {}
     std::size_t run();
 
   private:
     void look();
     Candidate crossingOn(std::int32_t edge) const;
     Between lineOn(std::size_t p, std::size_t q) const;
-    Between lineBeside(std::size_t star, std::size_t free) const;
+    Between lineBeside(std::size_t star, std::size_t other) const;
     bool runsAlong(const Place& from, const Place& to) const;
     Ring ringOf(std::size_t face) const;
     Cuts cutsOf(std::size_t face) const;
     void divide(const Ring& ring, Cuts& cuts) const;
     bool bestCut(const Ring& ring, std::size_t& from, std::size_t& to) const;
     bool differ(const Ring& ring, std::size_t from, std::size_t to) const;
+    bool liesOnLine(const Ring& ring, std::size_t from, std::size_t to) const;
+    Foot footUnder(const Ring& ring, std::size_t from, std::size_t to) const;
     bool isValid(const Ring& ring) const;
+    void findCandidates();
+    std::vector<RoomWish> roomWanted(const std::vector<Cuts>& cuts) const;
+    void wishRoom(const Ring& piece, std::vector<RoomWish>& wishes) const;
     bool prune(const std::vector<Cuts>& cuts);
+    void findWished();
     void apply(const std::vector<Cuts>& cuts);
     const Vec3& wallAt(const Place& p) const { return p.vertex >= 0 ? x_[std::size_t(p.vertex)] : candidates_[std::size_t(p.candidate)].wall; }
+    const Vec3& goingTo(const Place& p) const { return p.vertex >= 0 && wished_[std::size_t(p.vertex)] ? wishes_[std::size_t(p.vertex)].point : wallAt(p); }
+    double hAt(const Place& p) const { return band_.h[std::size_t(p.vertex >= 0 ? p.vertex : candidates_[std::size_t(p.candidate)].p)]; }
     const Vec3& frontAt(const Place& p) const {
         return p.vertex >= 0 ? x_[std::size_t(band_.frontNode[std::size_t(p.vertex)])] : candidates_[std::size_t(p.candidate)].front;
     }
@@ -70,10 +81,11 @@ class Inserter {
     const Band& band_;
     const SurfaceIndex& index_;
     const FeatureIndex& features_;
-    const std::vector<Vec3>& x_;
-    const std::vector<Snap>& snaps_;
+    std::vector<Vec3>& x_;
+    const std::vector<Snap>&snaps_, &wishes_;
     std::vector<Foot> feet_;                 // per wall node
     std::vector<std::uint8_t> star_;         // per wall node
+    std::vector<std::uint8_t> wished_;       // per wall node: will be brought to a line
     std::vector<Candidate> candidates_;
     std::vector<std::int32_t> candidateOf_;  // per edge of the front; -1: none
     std::vector<std::int32_t> faces_;        // that may be cut, ascending
@@ -104,15 +116,15 @@ Between Inserter::lineOn(std::size_t p, std::size_t q) const {
     return {};
 }
 
-// The line between a node that stands on one itself and a free one: what the edge passes on its way differs from what the
-// free node stands on.
-Between Inserter::lineBeside(std::size_t star, std::size_t free) const {
-    const Foot& foot = feet_[free];
+// The line between a node that stands on one itself and another: what the edge passes on its way differs from what it comes
+// to at the other end.
+Between Inserter::lineBeside(std::size_t star, std::size_t other) const {
+    const double h = std::max(band_.h[star], band_.h[other]);
+    const Vec3 fluid = (x_[std::size_t(band_.frontNode[star])] + x_[std::size_t(band_.frontNode[other])]) * 0.5;
+    const Foot foot = !star_[other] ? feet_[other] : footAt(index_, x_[star] + (x_[other] - x_[star]) * beforeEnd, fluid, h);
     if (!foot.found) return {};
-    const double h = std::max(band_.h[star], band_.h[free]);
-    const Vec3 fluid = (x_[std::size_t(band_.frontNode[star])] + x_[std::size_t(band_.frontNode[free])]) * 0.5;
     for (const double share : {0.5, 0.25}) {
-        const Vec3 way = x_[star] + (x_[free] - x_[star]) * share;
+        const Vec3 way = x_[star] + (x_[other] - x_[star]) * share;
         Foot passed = footAt(index_, way, fluid, h);
         if (!passed.found) continue;
         Between between;
@@ -140,11 +152,12 @@ Candidate Inserter::crossingOn(std::int32_t edge) const {
     const auto he = front_.mesh.halfedge_handle(FrontMesh::EdgeHandle(edge), 0);
     Candidate c{edge, front_.mesh.from_vertex_handle(he).idx(), front_.mesh.to_vertex_handle(he).idx(), 0, {}, {}, false, false, {}};
     const auto p = static_cast<std::size_t>(c.p), q = static_cast<std::size_t>(c.q);
-    if ((star_[p] && star_[q]) || (band_.outside[p] & band_.outside[q]) != 0) return c;
+    if ((band_.outside[p] & band_.outside[q]) != 0) return c;
     const auto isShared = [&](std::size_t n) { return band_.fansOf[std::size_t(band_.frontNode[n]) - band_.walls].size() > 1; };
     if (isShared(p) && isShared(q)) return c; // another sheet's edge may have the same ends
     c.beside = star_[p] || star_[q];
     Between between = !c.beside ? lineOn(p, q) : star_[p] ? lineBeside(p, q) : lineBeside(q, p);
+    if (!between.line.found && star_[p] && star_[q]) between = lineBeside(q, p);
     if (!between.line.found) return c;
     const Vec3 &a = x_[p], &b = x_[q];
     const double length = norm(b - a);
@@ -164,7 +177,8 @@ Candidate Inserter::crossingOn(std::int32_t edge) const {
         c.wall = on.point;
     }
     if (norm(a + (b - a) * c.t - c.wall) > farOff * length) return c;
-    if (c.beside && norm(c.wall - (star_[p] ? a : b)) < nearStar * band_.h[p]) return c;
+    const auto isNear = [&](std::size_t n) { return star_[n] && norm(c.wall - x_[n]) < nearStar * band_.h[p]; };
+    if (isNear(p) || isNear(q)) return c;
     const Vec3 &f = x_[std::size_t(band_.frontNode[p])], &g = x_[std::size_t(band_.frontNode[q])];
     c.front = f + (g - f) * c.t;
     c.alive = !index_.firstHit(c.front, c.wall, 0.97);
@@ -175,7 +189,7 @@ Ring Inserter::ringOf(std::size_t face) const {
     Ring ring;
     for (auto he : front_.mesh.fh_range(FrontMesh::FaceHandle(static_cast<int>(face)))) {
         const std::int32_t v = front_.mesh.from_vertex_handle(he).idx();
-        ring.push_back({v, -1, star_[std::size_t(v)] != 0, false});
+        ring.push_back({v, -1, star_[std::size_t(v)] != 0 || wished_[std::size_t(v)] != 0, false});
         const std::int32_t c = candidateOf_[std::size_t(front_.mesh.edge_handle(he).idx())];
         if (c >= 0 && candidates_[std::size_t(c)].alive) ring.push_back({-1, c, true, false});
     }
@@ -186,7 +200,7 @@ Ring Inserter::ringOf(std::size_t face) const {
 bool Inserter::runsAlong(const Place& from, const Place& to) const {
     if (from.candidate < 0) return false;
     const Candidate& c = candidates_[std::size_t(from.candidate)];
-    const Vec3 way = wallAt(to) - c.wall;
+    const Vec3 way = goingTo(to) - c.wall;
     return c.beside && norm(way - c.tangent * dot(way, c.tangent)) < follows * band_.h[std::size_t(c.p)];
 }
 
@@ -203,7 +217,27 @@ bool Inserter::differ(const Ring& ring, std::size_t from, std::size_t to) const 
             if (a.found && b.found && (turns(a, b) || a.part != b.part)) return true;
         }
     }
-    return false;
+    return liesOnLine(ring, from, to);
+}
+
+// What lies under the middle of the piece of a face from one place to another, round the way the ring goes.
+Foot Inserter::footUnder(const Ring& ring, std::size_t from, std::size_t to) const {
+    Vec3 wall, front;
+    double n = 0;
+    for (std::size_t i = from; i <= (to > from ? to : to + ring.size()); ++i, ++n) {
+        wall += goingTo(ring[i % ring.size()]);
+        front += frontAt(ring[i % ring.size()]);
+    }
+    return footAt(index_, wall / n, front / n, hAt(ring[from]));
+}
+
+// Nodes that all stand on lines themselves do not say what they part: what lies under the two pieces does.
+bool Inserter::liesOnLine(const Ring& ring, std::size_t from, std::size_t to) const {
+    const Vec3 &a = goingTo(ring[from]), &b = goingTo(ring[to]);
+    const FeatureIndex::Line line = features_.closestLine((a + b) * 0.5, onLine * hAt(ring[from]));
+    if (!line.found || std::abs(dot(line.tangent, normalized(b - a))) < alongLine) return false;
+    const Foot one = footUnder(ring, from, to), other = footUnder(ring, to, from);
+    return one.found && other.found && (turns(one, other) || one.part != other.part);
 }
 
 // The cut with most new ends, the shortest of these.
@@ -214,7 +248,7 @@ bool Inserter::bestCut(const Ring& ring, std::size_t& from, std::size_t& to) con
         for (std::size_t j = i + 2; j < ring.size(); ++j) {
             if ((i == 0 && j + 1 == ring.size()) || !ring[i].star || !ring[j].star || (ring[i].isEnd && ring[j].isEnd)) continue;
             const int fresh = (ring[i].vertex < 0 && !ring[i].isEnd) + (ring[j].vertex < 0 && !ring[j].isEnd);
-            const double length = norm2(wallAt(ring[i]) - wallAt(ring[j]));
+            const double length = norm2(goingTo(ring[i]) - goingTo(ring[j]));
             if (fresh < most || (fresh == most && length >= shortest) || !differ(ring, i, j)) continue;
             most = fresh, shortest = length, from = i, to = j;
         }
@@ -261,8 +295,29 @@ Cuts Inserter::cutsOf(std::size_t face) const {
     divide(ring, cuts);
     const bool touched = cuts.pieces.size() > 1 || std::any_of(ring.begin(), ring.end(), [](const Place& p) { return p.vertex < 0; });
     cuts.valid = !touched || std::all_of(cuts.pieces.begin(), cuts.pieces.end(), [&](const Ring& piece) { return isValid(piece); });
-    if (!cuts.valid) cuts.pieces.assign(1, ring);
     return cuts;
+}
+
+// Of the corners of a piece that stand right on the wall, with too little height under the front.
+void Inserter::wishRoom(const Ring& piece, std::vector<RoomWish>& wishes) const {
+    const std::size_t n = piece.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        const Place& at = piece[i];
+        if (at.vertex < 0) continue;
+        const Vec3 before = wallAt(piece[(i + n - 1) % n]) - wallAt(at), after = wallAt(piece[(i + 1) % n]) - wallAt(at);
+        const Vec3 normal = normalized(cross(before, after)), way = frontAt(at) - wallAt(at);
+        if (norm(cross(before, after)) > leastSlope * norm(before) * norm(after) && dot(normal, way) < leastSlope * norm(way)) wishes.push_back({at.vertex, normal});
+    }
+}
+
+// Where a cut is refused for the want of it.
+std::vector<RoomWish> Inserter::roomWanted(const std::vector<Cuts>& cuts) const {
+    std::vector<RoomWish> wishes;
+    for (const Cuts& c : cuts) {
+        if (c.valid || c.pieces.size() < 2) continue;
+        for (const Ring& piece : c.pieces) wishRoom(piece, wishes);
+    }
+    return wishes;
 }
 
 // Gives up candidates of faces that cannot take them, and those that end no cut. False: nothing to give up.
@@ -286,6 +341,15 @@ bool Inserter::prune(const std::vector<Cuts>& cuts) {
     return any;
 }
 
+// Those that no candidate spares the way.
+void Inserter::findWished() {
+    wished_.assign(band_.walls, 0);
+    for (std::size_t n = 0; n < band_.walls; ++n) wished_[n] = !star_[n] && snaps_[n].kind == SnapKind::none && wishes_[n].kind != SnapKind::none;
+    for (const Candidate& c : candidates_) {
+        if (c.alive) wished_[std::size_t(c.p)] = wished_[std::size_t(c.q)] = 0;
+    }
+}
+
 void Inserter::apply(const std::vector<Cuts>& cuts) {
     std::vector<std::int32_t> vertexOf(candidates_.size(), -1);
     const auto lattice = static_cast<std::int32_t>(front_.corePoints);
@@ -306,7 +370,7 @@ void Inserter::apply(const std::vector<Cuts>& cuts) {
     }
     std::vector<FaceCut> faceCuts;
     for (std::size_t i = 0; i < cuts.size(); ++i) {
-        const bool whole = cuts[i].pieces.size() == 1 && std::all_of(cuts[i].pieces[0].begin(), cuts[i].pieces[0].end(), [](const Place& p) { return p.vertex >= 0; });
+        const bool whole = !cuts[i].valid || (cuts[i].pieces.size() == 1 && std::all_of(cuts[i].pieces[0].begin(), cuts[i].pieces[0].end(), [](const Place& p) { return p.vertex >= 0; }));
         if (whole) continue;
         FaceCut& cut = faceCuts.emplace_back();
         cut.face = faces_[i];
@@ -318,38 +382,53 @@ void Inserter::apply(const std::vector<Cuts>& cuts) {
     replaceFaces(front_, faceCuts);
 }
 
-std::size_t Inserter::run() {
-    look();
+void Inserter::findCandidates() {
     const std::size_t edges = front_.mesh.n_edges();
     std::vector<Candidate> all(edges);
     parallelFor(edges, [&](std::size_t e) { all[e] = crossingOn(static_cast<std::int32_t>(e)); });
+    candidates_.clear();
     candidateOf_.assign(edges, -1);
     for (std::size_t e = 0; e < edges; ++e) {
         if (!all[e].alive) continue;
         candidateOf_[e] = static_cast<std::int32_t>(candidates_.size());
         candidates_.push_back(all[e]);
     }
+    faces_.clear();
     for (std::size_t f = 0; f < front_.ownerCell.size(); ++f) {
         std::size_t stars = 0, crossed = 0;
         for (auto he : front_.mesh.fh_range(FrontMesh::FaceHandle(static_cast<int>(f)))) {
-            stars += star_[std::size_t(front_.mesh.from_vertex_handle(he).idx())];
+            const auto v = static_cast<std::size_t>(front_.mesh.from_vertex_handle(he).idx());
+            stars += star_[v] || wishes_[v].kind != SnapKind::none;
             crossed += candidateOf_[std::size_t(front_.mesh.edge_handle(he).idx())] >= 0;
         }
         if (crossed > 0 || stars > 1) faces_.push_back(static_cast<std::int32_t>(f));
     }
-    std::vector<Cuts> cuts(faces_.size());
-    do {
+}
+
+std::size_t Inserter::run() {
+    look();
+    findCandidates();
+    std::vector<Cuts> cuts;
+    const auto cutAll = [&] {
+        findWished();
+        cuts.resize(faces_.size());
         parallelFor(faces_.size(), [&](std::size_t i) { cuts[i] = cutsOf(static_cast<std::size_t>(faces_[i])); }, 64);
-    } while (prune(cuts));
+    };
+    cutAll();
+    if (makeRoom(roomWanted(cuts), band_, index_, x_, front_) > 0) {
+        findCandidates();
+        cutAll();
+    }
+    while (prune(cuts)) cutAll();
     apply(cuts);
     return front_.inserted.size();
 }
 
 } // namespace
 
-std::size_t insertVertices(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x,
-                           const std::vector<Snap>& snaps) {
-    return Inserter(front, band, index, features, x, snaps).run();
+std::size_t insertVertices(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features, std::vector<Vec3>& x,
+                           const std::vector<Snap>& snaps, const std::vector<Snap>& wishes) {
+    return Inserter(front, band, index, features, x, snaps, wishes).run();
 }
 
 } // namespace i2b
