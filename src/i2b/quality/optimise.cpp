@@ -153,24 +153,56 @@ bool Optimiser::mendNode(const Task& task, Worker& worker) {
     return !(best == from);
 }
 
+// Of the column of layers over a wall node; none where that is straight whatever it says.
+float* Optimiser::bendOf(const MeshNode& wall) {
+    if (wall.kind != MeshNode::wall || stack_.columns.empty()) return nullptr;
+    Column& column = stack_.columns[Index(wall.id)];
+    return column.normal() == Vec3{} ? nullptr : &column.bend;
+}
+
 bool Optimiser::bendNode(const Task& task, Worker& worker) {
-    if (task.node.kind != MeshNode::wall) return false;
-    Column& column = stack_.columns[Index(task.node.id)];
-    if (column.normal() == Vec3{}) return false;
+    float* bend = bendOf(task.node);
+    if (!bend) return false;
     worker.begin(task);
     const Badness before = worker.at(worker.from);
-    const float was = column.bend;
+    const float was = *bend;
     float best = was;
     Badness least = before;
     for (const float value : bends) {
-        column.bend = value;
+        *bend = value;
         const Badness b = worker.at(worker.from);
         if (b.worst > before.worst || (b.invalid && !before.invalid) || !(b.sum < least.sum * (1 - leastGain))) continue;
         least = b, best = value;
     }
-    column.bend = best;
+    *bend = best;
     worker.end(worker.from);
     return best != was;
+}
+
+// Whether a wall node may stand at a place, with its column as it is or bent another way, which it then is.
+bool Optimiser::fitsAt(const Task& task, Worker& worker, const Vec3& to, const Badness& before) {
+    if (mayStand(worker.at(to), before)) return true;
+    float* bend = bendOf(task.node);
+    if (!bend) return false;
+    const float was = *bend;
+    for (const float value : bends) {
+        *bend = value;
+        if (value != was && mayStand(worker.at(to), before)) return true;
+    }
+    *bend = was;
+    return false;
+}
+
+// Brings a wall node to a place if it may stand there: no nearer to another node than `shortest` (m), and seen by the flow.
+bool Optimiser::comeTo(const Task& task, Worker& worker, const Vec3& to, const Badness& before, double shortest) {
+    float* bend = bendOf(task.node);
+    const float was = bend ? *bend : 0;
+    if (fitsAt(task, worker, to, before) && worker.shortestEdge() >= shortest && isFree(task.node, to)) {
+        worker.end(to);
+        return true;
+    }
+    if (bend) *bend = was;
+    return false;
 }
 
 std::int64_t Optimiser::bend() {
@@ -204,16 +236,12 @@ bool Optimiser::pullNode(const Task& task, Worker& worker) {
     const Vec3 from = worker.from, way = withinSides(target - from, nodes_.outside(task.node));
     if (norm(way) < 1e-9 * nodes_.h(task.node)) return false;
     const Badness before = worker.at(from);
-    const double shortest = worker.shortestEdge();
-    Vec3 best = from;
+    const double shortest = std::min(worker.shortestEdge(), leastEdge * nodes_.h(task.node));
     for (const double part : {1.0, 0.5, 0.25}) {
-        const Vec3 to = from + way * part;
-        if (!mayStand(worker.at(to), before) || worker.shortestEdge() < std::min(shortest, leastEdge * nodes_.h(task.node)) || !isFree(task.node, to)) continue;
-        best = to;
-        break;
+        if (comeTo(task, worker, from + way * part, before, shortest)) return true;
     }
-    worker.end(best);
-    return !(best == from);
+    worker.end(from);
+    return false;
 }
 
 // Groups of tasks that may go at once: no cell that one changes is read by another. Those beyond 64 colours wait for
@@ -343,9 +371,9 @@ bool Optimiser::snapNode(const Task& task, Worker& worker) {
     const Vec3 from = worker.from, to = snapLine(guide_.index, guide_.features, wish, from, front_.h[v]).point;
     const Badness before = worker.at(from);
     const double shortest = std::min(worker.shortestEdge(), leastEdge * front_.h[v]);
-    const bool there = mayStand(worker.at(to), before) && worker.shortestEdge() >= shortest && isFree(task.node, to);
-    worker.end(there ? to : from);
+    const bool there = comeTo(task, worker, to, before, shortest);
     if (there) guide_.snaps[v] = wish;
+    else worker.end(from);
     return there;
 }
 

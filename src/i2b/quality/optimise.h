@@ -9,6 +9,8 @@
 
 namespace i2b {
 
+struct Badness;
+
 // What the wall nodes belong to.
 struct WallGuide {
     const SurfaceIndex& index;
@@ -49,6 +51,9 @@ class Optimiser {
     bool targetOf(std::int32_t vertex, Vec3& target) const;
     bool bendNode(const Task& task, Worker& worker);
     bool mendNode(const Task& task, Worker& worker);
+    float* bendOf(const MeshNode& wall);
+    bool fitsAt(const Task& task, Worker& worker, const Vec3& to, const Badness& before);
+    bool comeTo(const Task& task, Worker& worker, const Vec3& to, const Badness& before, double shortest);
     bool pullNode(const Task& task, Worker& worker);
     bool snapNode(const Task& task, Worker& worker);
     std::vector<Task> wallTasks(const std::vector<std::uint8_t>& wanted) const;
