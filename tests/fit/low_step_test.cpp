@@ -13,17 +13,16 @@ double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
     return norm(p - a - d * std::clamp(dot(p - a, d) / norm2(d), 0.0, 1.0));
 }
 
-// Of the plate's outline on the top, away from its corners: the share that has an edge between the two parts within 0.1 h.
-double footCaptured(const Front& front) {
-    const std::array<Vec3, 4> foot = plateFoot();
-    int samples = 0, captured = 0;
+// Of an outline, away from its corners: the share that has an edge between the two parts within 0.1 h.
+double captured(const Front& front, const std::array<Vec3, 4>& foot) {
+    int samples = 0, found = 0;
     for (std::size_t i = 0; i < 4; ++i) {
         const Vec3 a = foot[i], way = foot[(i + 1) % 4] - a;
         const double length = norm(way);
         for (double along = 1.5 * stagesSize; along < length - 1.5 * stagesSize; along += stagesSize / 4) {
             const Vec3 p = a + way * (along / length);
             ++samples;
-            captured += std::any_of(front.mesh.edges_begin(), front.mesh.edges_end(), [&](FrontMesh::EdgeHandle e) {
+            found += std::any_of(front.mesh.edges_begin(), front.mesh.edges_end(), [&](FrontMesh::EdgeHandle e) {
                 const auto he = front.mesh.halfedge_handle(e, 0);
                 const FrontMesh::FaceHandle f = front.mesh.face_handle(he), g = front.mesh.opposite_face_handle(he);
                 if (!f.is_valid() || !g.is_valid() || front.part[static_cast<std::size_t>(f.idx())] == front.part[static_cast<std::size_t>(g.idx())]) return false;
@@ -32,15 +31,11 @@ double footCaptured(const Front& front) {
             });
         }
     }
-    return double(captured) / samples;
+    return double(found) / samples;
 }
 
-class LowStep : public testing::TestWithParam<double> {}; // height, in cells
-
-TEST_P(LowStep, FootIsCaptured) {
-    const ToMesh run(plateInTop(GetParam() * stagesSize), stagesOptions());
+void expectSound(const ToMesh& run) {
     EXPECT_EQ(run.front.validate(), "");
-    EXPECT_GT(footCaptured(run.front), 0.8);
     const QualityReport q = measureQuality(run.mesh);
     EXPECT_EQ(q.openCells + q.openCellsByEdges + q.unusedPoints + q.duplicateFaces + q.faultyFaceVertices, 0);
     for (auto e : run.front.mesh.edges()) {
@@ -50,7 +45,25 @@ TEST_P(LowStep, FootIsCaptured) {
     }
 }
 
+class LowStep : public testing::TestWithParam<double> {}; // height, in cells
+
+TEST_P(LowStep, FootIsCaptured) {
+    const ToMesh run(plateInTop(GetParam() * stagesSize), stagesOptions());
+    EXPECT_GT(captured(run.front, plateFoot()), 0.8);
+    expectSound(run);
+}
+
 INSTANTIATE_TEST_SUITE_P(Heights, LowStep, testing::Values(0.4, 0.6, 0.8));
+
+class NarrowLedge : public testing::TestWithParam<double> {}; // width, in cells
+
+TEST_P(NarrowLedge, FootIsCaptured) {
+    const ToMesh run(lidOnTop(GetParam() * stagesSize), stagesOptions());
+    EXPECT_GT(captured(run.front, lidFoot()), 0.95);
+    expectSound(run);
+}
+
+INSTANTIATE_TEST_SUITE_P(Widths, NarrowLedge, testing::Values(0.4, 0.45, 0.5, 0.6));
 
 TEST(LowStepThreads, SameOnAnyNumber) {
     std::uint64_t sum = 0;

@@ -100,23 +100,39 @@ Surface flushHalves() {
     return soup;
 }
 
+namespace {
+
+Vec3 turned(const Vec3& p) { return {p.x * std::cos(plateTurn) - p.y * std::sin(plateTurn), p.x * std::sin(plateTurn) + p.y * std::cos(plateTurn), p.z}; }
+
+// Of a rectangle with this half at the height of the block's top.
+std::array<Vec3, 4> turnedOutline(const Vec3& of) {
+    return {turned({-of.x, -of.y, half.z}), turned({of.x, -of.y, half.z}), turned({of.x, of.y, half.z}), turned({-of.x, of.y, half.z})};
+}
+
+} // namespace
+
 Surface plateInTop(double rise) {
     samples::Mesh plate = samples::box(-plateHalf, {plateHalf.x, plateHalf.y, rise});
-    for (Vec3& p : plate.points) p = {p.x * std::cos(plateTurn) - p.y * std::sin(plateTurn), p.x * std::sin(plateTurn) + p.y * std::cos(plateTurn), p.z + half.z};
+    for (Vec3& p : plate.points) p = turned(p) + Vec3{0, 0, half.z};
     Surface soup;
     addPart(soup, samples::box(-half, half), "block");
     addPart(soup, plate, "plate");
     return soup;
 }
 
-std::array<Vec3, 4> plateFoot() {
-    std::array<Vec3, 4> foot;
-    for (std::size_t i = 0; i < 4; ++i) {
-        const double x = (i == 1 || i == 2 ? 1 : -1) * plateHalf.x, y = (i < 2 ? -1 : 1) * plateHalf.y;
-        foot[i] = {x * std::cos(plateTurn) - y * std::sin(plateTurn), x * std::sin(plateTurn) + y * std::cos(plateTurn), half.z};
-    }
-    return foot;
+std::array<Vec3, 4> plateFoot() { return turnedOutline(plateHalf); }
+
+Surface lidOnTop(double over) {
+    samples::Mesh block = samples::box(-half, half), lid = samples::box({-half.x - over, -half.y - over, half.z}, {half.x + over, half.y + over, half.z + 0.4});
+    for (samples::Mesh* mesh : {&block, &lid})
+        for (Vec3& p : mesh->points) p = turned(p);
+    Surface soup;
+    addPart(soup, block, "block");
+    addPart(soup, lid, "lid");
+    return soup;
 }
+
+std::array<Vec3, 4> lidFoot() { return turnedOutline(half); }
 
 ToFront::ToFront(const Surface& soup, const Options& options)
     : painted(RandomCase{"", soup, options}), kept(carve(painted.grid, painted.cut, painted.regions, *painted.index, options.fit)),

@@ -21,6 +21,9 @@ double borderSide(const Vec3& p); // m, signed
 // axis: part 1, which rises by so much above it, m. The corners of its outline on the top.
 Surface plateInTop(double rise);
 std::array<Vec3, 4> plateFoot();
+// The same box, turned itself, with a lid on its top that juts out by so much all round, m: part 1. The corners of the box's top.
+Surface lidOnTop(double over);
+std::array<Vec3, 4> lidFoot();
 
 // Up to the front.
 struct ToFront {

@@ -49,20 +49,22 @@ Crossing crossingOf(const Band& band, const FeatureIndex& features, const std::v
 }
 
 // A wall edge from one side of a step to the other: both ends stand on surfaces that do not turn, its middle off all
-// geometry. Each end has a line between itself and the riser that the middle sees.
+// geometry. Each end has a line between itself and the riser that the edge sees on its way, which need not be in the middle.
 std::array<Crossing, 2> stepOf(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x,
                                const std::vector<Foot>& feet, std::int32_t p, std::int32_t q) {
     std::array<Crossing, 2> found;
     const auto a = static_cast<std::size_t>(p), b = static_cast<std::size_t>(q);
     const double h = std::max(band.h[a], band.h[b]);
     const Vec3 fluid = (x[static_cast<std::size_t>(band.frontNode[a])] + x[static_cast<std::size_t>(band.frontNode[b])]) * 0.5;
-    const Vec3 middle = (x[a] + x[b]) * 0.5;
-    const ClosestPoint near = index.closest(middle, steps * h); // most are: what they stand on matters to the others alone
-    if (near && near.distance < steps * h) return found;
-    const Foot riser = footAt(index, middle, fluid, h);
-    if (!riser.found) return found;
-    if (turns(feet[a], riser)) found[0] = crossingAt(band, features, x, lineBetween(index, features, feet[a], riser, fluid, h), p);
-    if (turns(feet[b], riser)) found[1] = crossingAt(band, features, x, lineBetween(index, features, feet[b], riser, fluid, h), q);
+    for (const double share : {0.5, 0.25, 0.75}) {
+        const Vec3 way = x[a] + (x[b] - x[a]) * share;
+        // Most edges lie on what they stand on: that matters to the others alone.
+        if (share == 0.5 && index.closest(way, steps * h)) return found;
+        const Foot riser = footAt(index, way, fluid, h);
+        if (turns(feet[a], riser)) found[0] = crossingAt(band, features, x, lineBetween(index, features, feet[a], riser, fluid, h), p);
+        if (turns(feet[b], riser)) found[1] = crossingAt(band, features, x, lineBetween(index, features, feet[b], riser, fluid, h), q);
+        if (found[0].node >= 0 || found[1].node >= 0) break;
+    }
     return found;
 }
 

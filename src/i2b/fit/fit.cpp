@@ -80,7 +80,7 @@ void seekOnce(Front& front, const Band& band, const SurfaceIndex& index, const F
     summary.wishes = snaps;
     snapToFeatures(band, front, index, features, x, summary.wishes);
     snapFolds(band, front, index, features, x, summary.wishes);
-    summary.inserted = insertVertices(front, band, index, features, x, snaps, summary.wishes);
+    summary.inserted = insertVertices(front, band, index, features, x, snaps);
     for (std::size_t n = 0; n < band.walls; ++n) {
         if (snaps[n].kind != SnapKind::none) summary.wishes[n] = {};
     }

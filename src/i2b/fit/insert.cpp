@@ -15,7 +15,7 @@ constexpr double nearStar = 0.2;     // of h: crossings nearer to an end that st
 constexpr double beforeEnd = 0.85;   // of an edge: where it is beside the line that its end stands on
 constexpr double follows = 0.2;      // of h: so near to a line what a cut along it ends at may be
 constexpr double bridged = 0.04;     // of h: an edge whose places are farther off the geometry bridges a corner
-constexpr double onLine = 0.05;      // of h: a snapped node so near to its line stands on it
+constexpr double onLine = 0.1;       // of h: a snapped node so near to its line stands on it
 const double alongLine = std::cos(20 * 3.14159265358979323846 / 180);
 constexpr double upon = 0.02;        // of h: a node so near to two parts stands on their border
 constexpr double worstCorner = 0.03; // scaled Jacobian that a piece of a prism must have
@@ -46,8 +46,8 @@ struct Cuts { // of one face
 class Inserter {
   public:
     Inserter(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features, std::vector<Vec3>& x,
-             const std::vector<Snap>& snaps, const std::vector<Snap>& wishes)
-        : front_(front), band_(band), index_(index), features_(features), x_(x), snaps_(snaps), wishes_(wishes) {}
+             const std::vector<Snap>& snaps)
+        : front_(front), band_(band), index_(index), features_(features), x_(x), snaps_(snaps) {}
     std::size_t run();
 
   private:
@@ -68,10 +68,8 @@ class Inserter {
     std::vector<RoomWish> roomWanted(const std::vector<Cuts>& cuts) const;
     void wishRoom(const Ring& piece, std::vector<RoomWish>& wishes) const;
     bool prune(const std::vector<Cuts>& cuts);
-    void findWished();
     void apply(const std::vector<Cuts>& cuts);
     const Vec3& wallAt(const Place& p) const { return p.vertex >= 0 ? x_[std::size_t(p.vertex)] : candidates_[std::size_t(p.candidate)].wall; }
-    const Vec3& goingTo(const Place& p) const { return p.vertex >= 0 && wished_[std::size_t(p.vertex)] ? wishes_[std::size_t(p.vertex)].point : wallAt(p); }
     double hAt(const Place& p) const { return band_.h[std::size_t(p.vertex >= 0 ? p.vertex : candidates_[std::size_t(p.candidate)].p)]; }
     const Vec3& frontAt(const Place& p) const {
         return p.vertex >= 0 ? x_[std::size_t(band_.frontNode[std::size_t(p.vertex)])] : candidates_[std::size_t(p.candidate)].front;
@@ -82,10 +80,9 @@ class Inserter {
     const SurfaceIndex& index_;
     const FeatureIndex& features_;
     std::vector<Vec3>& x_;
-    const std::vector<Snap>&snaps_, &wishes_;
+    const std::vector<Snap>& snaps_;
     std::vector<Foot> feet_;                 // per wall node
     std::vector<std::uint8_t> star_;         // per wall node
-    std::vector<std::uint8_t> wished_;       // per wall node: will be brought to a line
     std::vector<Candidate> candidates_;
     std::vector<std::int32_t> candidateOf_;  // per edge of the front; -1: none
     std::vector<std::int32_t> faces_;        // that may be cut, ascending
@@ -189,7 +186,7 @@ Ring Inserter::ringOf(std::size_t face) const {
     Ring ring;
     for (auto he : front_.mesh.fh_range(FrontMesh::FaceHandle(static_cast<int>(face)))) {
         const std::int32_t v = front_.mesh.from_vertex_handle(he).idx();
-        ring.push_back({v, -1, star_[std::size_t(v)] != 0 || wished_[std::size_t(v)] != 0, false});
+        ring.push_back({v, -1, star_[std::size_t(v)] != 0, false});
         const std::int32_t c = candidateOf_[std::size_t(front_.mesh.edge_handle(he).idx())];
         if (c >= 0 && candidates_[std::size_t(c)].alive) ring.push_back({-1, c, true, false});
     }
@@ -200,7 +197,7 @@ Ring Inserter::ringOf(std::size_t face) const {
 bool Inserter::runsAlong(const Place& from, const Place& to) const {
     if (from.candidate < 0) return false;
     const Candidate& c = candidates_[std::size_t(from.candidate)];
-    const Vec3 way = goingTo(to) - c.wall;
+    const Vec3 way = wallAt(to) - c.wall;
     return c.beside && norm(way - c.tangent * dot(way, c.tangent)) < follows * band_.h[std::size_t(c.p)];
 }
 
@@ -225,7 +222,7 @@ Foot Inserter::footUnder(const Ring& ring, std::size_t from, std::size_t to) con
     Vec3 wall, front;
     double n = 0;
     for (std::size_t i = from; i <= (to > from ? to : to + ring.size()); ++i, ++n) {
-        wall += goingTo(ring[i % ring.size()]);
+        wall += wallAt(ring[i % ring.size()]);
         front += frontAt(ring[i % ring.size()]);
     }
     return footAt(index_, wall / n, front / n, hAt(ring[from]));
@@ -233,7 +230,7 @@ Foot Inserter::footUnder(const Ring& ring, std::size_t from, std::size_t to) con
 
 // Nodes that all stand on lines themselves do not say what they part: what lies under the two pieces does.
 bool Inserter::liesOnLine(const Ring& ring, std::size_t from, std::size_t to) const {
-    const Vec3 &a = goingTo(ring[from]), &b = goingTo(ring[to]);
+    const Vec3 &a = wallAt(ring[from]), &b = wallAt(ring[to]);
     const FeatureIndex::Line line = features_.closestLine((a + b) * 0.5, onLine * hAt(ring[from]));
     if (!line.found || std::abs(dot(line.tangent, normalized(b - a))) < alongLine) return false;
     const Foot one = footUnder(ring, from, to), other = footUnder(ring, to, from);
@@ -248,7 +245,7 @@ bool Inserter::bestCut(const Ring& ring, std::size_t& from, std::size_t& to) con
         for (std::size_t j = i + 2; j < ring.size(); ++j) {
             if ((i == 0 && j + 1 == ring.size()) || !ring[i].star || !ring[j].star || (ring[i].isEnd && ring[j].isEnd)) continue;
             const int fresh = (ring[i].vertex < 0 && !ring[i].isEnd) + (ring[j].vertex < 0 && !ring[j].isEnd);
-            const double length = norm2(goingTo(ring[i]) - goingTo(ring[j]));
+            const double length = norm2(wallAt(ring[i]) - wallAt(ring[j]));
             if (fresh < most || (fresh == most && length >= shortest) || !differ(ring, i, j)) continue;
             most = fresh, shortest = length, from = i, to = j;
         }
@@ -341,15 +338,6 @@ bool Inserter::prune(const std::vector<Cuts>& cuts) {
     return any;
 }
 
-// Those that no candidate spares the way.
-void Inserter::findWished() {
-    wished_.assign(band_.walls, 0);
-    for (std::size_t n = 0; n < band_.walls; ++n) wished_[n] = !star_[n] && snaps_[n].kind == SnapKind::none && wishes_[n].kind != SnapKind::none;
-    for (const Candidate& c : candidates_) {
-        if (c.alive) wished_[std::size_t(c.p)] = wished_[std::size_t(c.q)] = 0;
-    }
-}
-
 void Inserter::apply(const std::vector<Cuts>& cuts) {
     std::vector<std::int32_t> vertexOf(candidates_.size(), -1);
     const auto lattice = static_cast<std::int32_t>(front_.corePoints);
@@ -397,8 +385,7 @@ void Inserter::findCandidates() {
     for (std::size_t f = 0; f < front_.ownerCell.size(); ++f) {
         std::size_t stars = 0, crossed = 0;
         for (auto he : front_.mesh.fh_range(FrontMesh::FaceHandle(static_cast<int>(f)))) {
-            const auto v = static_cast<std::size_t>(front_.mesh.from_vertex_handle(he).idx());
-            stars += star_[v] || wishes_[v].kind != SnapKind::none;
+            stars += star_[std::size_t(front_.mesh.from_vertex_handle(he).idx())];
             crossed += candidateOf_[std::size_t(front_.mesh.edge_handle(he).idx())] >= 0;
         }
         if (crossed > 0 || stars > 1) faces_.push_back(static_cast<std::int32_t>(f));
@@ -410,7 +397,6 @@ std::size_t Inserter::run() {
     findCandidates();
     std::vector<Cuts> cuts;
     const auto cutAll = [&] {
-        findWished();
         cuts.resize(faces_.size());
         parallelFor(faces_.size(), [&](std::size_t i) { cuts[i] = cutsOf(static_cast<std::size_t>(faces_[i])); }, 64);
     };
@@ -427,8 +413,8 @@ std::size_t Inserter::run() {
 } // namespace
 
 std::size_t insertVertices(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features, std::vector<Vec3>& x,
-                           const std::vector<Snap>& snaps, const std::vector<Snap>& wishes) {
-    return Inserter(front, band, index, features, x, snaps, wishes).run();
+                           const std::vector<Snap>& snaps) {
+    return Inserter(front, band, index, features, x, snaps).run();
 }
 
 } // namespace i2b

@@ -1,17 +1,15 @@
 // Vertices for the front where the fit has none: a wall edge that still crosses a sharp edge of the geometry, or a
 // border between parts, is divided at the crossing, front and wall alike, and the faces beside it are cut from crossing
 // to crossing, so that each prism stands on one side of the line. Nothing else moves but front nodes that make room.
-//
-// A node that wishes to stand on a line ends cuts as one that does, unless an edge of its own is divided: then it stays.
 #pragma once
 #include "i2b/fit/features.h"
 #include "i2b/front/front.h"
 
 namespace i2b {
 
-// x: the fitted positions of the band's nodes, as stored in front, where front nodes make room; wishes: per wall node, what it is to be brought to later.
-// The band does not know the new vertices. Gives how many were inserted.
+// x: the fitted positions of the band's nodes, as stored in front, where front nodes make room. The band does not know the
+// new vertices. Gives how many were inserted.
 std::size_t insertVertices(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features, std::vector<Vec3>& x,
-                           const std::vector<Snap>& snaps, const std::vector<Snap>& wishes);
+                           const std::vector<Snap>& snaps);
 
 } // namespace i2b
