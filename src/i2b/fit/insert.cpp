@@ -1,6 +1,6 @@
 #include "i2b/fit/insert.h"
 #include "i2b/core/parallel.h"
-#include "i2b/fit/between.h"
+#include "i2b/fit/crossings.h"
 #include "i2b/fit/fit.h"
 #include "i2b/fit/front_room.h"
 #include "i2b/front/replace_faces.h"
@@ -9,26 +9,11 @@
 namespace i2b {
 namespace {
 
-constexpr double nearEnd = 0.12;     // of an edge: crossings nearer to an end are that node's own business
-constexpr double farOff = 0.6;       // of an edge: crossings farther from it belong to another one
-constexpr double nearStar = 0.2;     // of h: crossings nearer to an end that stands on another line are left
-constexpr double beforeEnd = 0.85;   // of an edge: where it is beside the line that its end stands on
 constexpr double follows = 0.2;      // of h: so near to a line what a cut along it ends at may be
-constexpr double bridged = 0.04;     // of h: an edge whose places are farther off the geometry bridges a corner
-constexpr double onLine = 0.1;       // of h: a snapped node so near to its line stands on it
+constexpr double onLine = 0.1;       // of h: a cut whose middle is so near to a line lies on it
 const double alongLine = std::cos(20 * 3.14159265358979323846 / 180);
-constexpr double upon = 0.02;        // of h: a node so near to two parts stands on their border
 constexpr double worstCorner = 0.03; // scaled Jacobian that a piece of a prism must have
 constexpr std::size_t mostVertices = 8; // of a front face
-
-struct Candidate {
-    std::int32_t edge = -1, p = -1, q = -1; // of the front; its vertices
-    double t = 0;
-    Vec3 front, wall;                       // m
-    bool alive = true;
-    bool beside = false;                    // an end of the edge stands on another line
-    Vec3 tangent;                           // unit, of the line or border
-};
 
 struct Place { // a vertex of a face that may be cut
     std::int32_t vertex = -1;    // of the front; or
@@ -47,14 +32,10 @@ class Inserter {
   public:
     Inserter(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features, std::vector<Vec3>& x,
              const std::vector<Snap>& snaps)
-        : front_(front), band_(band), index_(index), features_(features), x_(x), snaps_(snaps) {}
+        : front_(front), band_(band), index_(index), features_(features), x_(x), marks_(markWall(band, index, features, x, snaps)) {}
     std::size_t run();
 
   private:
-    void look();
-    Candidate crossingOn(std::int32_t edge) const;
-    Between lineOn(std::size_t p, std::size_t q) const;
-    Between lineBeside(std::size_t star, std::size_t other) const;
     bool runsAlong(const Place& from, const Place& to) const;
     Ring ringOf(std::size_t face) const;
     Cuts cutsOf(std::size_t face) const;
@@ -80,113 +61,17 @@ class Inserter {
     const SurfaceIndex& index_;
     const FeatureIndex& features_;
     std::vector<Vec3>& x_;
-    const std::vector<Snap>& snaps_;
-    std::vector<Foot> feet_;                 // per wall node
-    std::vector<std::uint8_t> star_;         // per wall node
-    std::vector<Candidate> candidates_;
+    const WallMarks marks_;
+    std::vector<EdgeCrossing> candidates_;
     std::vector<std::int32_t> candidateOf_;  // per edge of the front; -1: none
     std::vector<std::int32_t> faces_;        // that may be cut, ascending
 };
-
-void Inserter::look() {
-    feet_.resize(band_.walls), star_.assign(band_.walls, 0);
-    parallelFor(band_.walls, [&](std::size_t n) {
-        feet_[n] = footOf(band_, index_, x_, n);
-        star_[n] = snaps_[n].kind != SnapKind::none && norm(snapLine(index_, features_, snaps_[n], x_[n], band_.h[n]).point - x_[n]) <= onLine * band_.h[n];
-    });
-    parallelFor(band_.walls, [&](std::size_t n) {
-        if (star_[n] || !feet_[n].found) return;
-        for (const BandEdge& e : band_.edges[n]) {
-            const auto m = static_cast<std::size_t>(e.b);
-            if (m >= band_.walls || feet_[m].part == feet_[n].part) continue;
-            star_[n] = hasOtherPartNear(index_, feet_[n], upon * band_.h[n]);
-            return;
-        }
-    });
-}
-
-Between Inserter::lineOn(std::size_t p, std::size_t q) const {
-    const Foot &a = feet_[p], &b = feet_[q];
-    const double h = std::max(band_.h[p], band_.h[q]);
-    if (turns(a, b)) return lineBetween(index_, features_, a, b, x_[std::size_t(band_.frontNode[p])], h);
-    if (a.found && b.found && a.part != b.part) return borderBetween(index_, a, b, h);
-    return {};
-}
-
-// The line between a node that stands on one itself and another: what the edge passes on its way differs from what it comes
-// to at the other end.
-Between Inserter::lineBeside(std::size_t star, std::size_t other) const {
-    const double h = std::max(band_.h[star], band_.h[other]);
-    const Vec3 fluid = (x_[std::size_t(band_.frontNode[star])] + x_[std::size_t(band_.frontNode[other])]) * 0.5;
-    const Foot foot = !star_[other] ? feet_[other] : footAt(index_, x_[star] + (x_[other] - x_[star]) * beforeEnd, fluid, h);
-    if (!foot.found) return {};
-    for (const double share : {0.5, 0.25}) {
-        const Vec3 way = x_[star] + (x_[other] - x_[star]) * share;
-        Foot passed = footAt(index_, way, fluid, h);
-        if (!passed.found) continue;
-        Between between;
-        if (turns(passed, foot) && norm(passed.point - way) > bridged * h) {
-            between = lineUnder(index_, features_, foot, passed, fluid, h);
-        } else if (!turns(passed, foot) && passed.part != foot.part) {
-            between = borderBetween(index_, passed, foot, h);
-        }
-        if (between.line.found) return between;
-    }
-    return {};
-}
-
-// Where a line comes nearest to a segment: share of the segment's way, place on the line.
-double nearestOn(const FeatureIndex::Line& line, const Vec3& a, const Vec3& b, Vec3& place) {
-    const Vec3 d = b - a, w = a - line.point;
-    const double dd = norm2(d), dt = dot(d, line.tangent), det = dd - dt * dt;
-    const double t = det > 1e-6 * dd ? (dt * dot(w, line.tangent) - dot(w, d)) / det : 0.5;
-    const Vec3 on = a + d * std::clamp(t, 0.0, 1.0);
-    place = line.point + line.tangent * dot(on - line.point, line.tangent);
-    return t;
-}
-
-Candidate Inserter::crossingOn(std::int32_t edge) const {
-    const auto he = front_.mesh.halfedge_handle(FrontMesh::EdgeHandle(edge), 0);
-    Candidate c{edge, front_.mesh.from_vertex_handle(he).idx(), front_.mesh.to_vertex_handle(he).idx(), 0, {}, {}, false, false, {}};
-    const auto p = static_cast<std::size_t>(c.p), q = static_cast<std::size_t>(c.q);
-    if ((band_.outside[p] & band_.outside[q]) != 0) return c;
-    const auto isShared = [&](std::size_t n) { return band_.fansOf[std::size_t(band_.frontNode[n]) - band_.walls].size() > 1; };
-    if (isShared(p) && isShared(q)) return c; // another sheet's edge may have the same ends
-    c.beside = star_[p] || star_[q];
-    Between between = !c.beside ? lineOn(p, q) : star_[p] ? lineBeside(p, q) : lineBeside(q, p);
-    if (!between.line.found && star_[p] && star_[q]) between = lineBeside(q, p);
-    if (!between.line.found) return c;
-    const Vec3 &a = x_[p], &b = x_[q];
-    const double length = norm(b - a);
-    c.t = nearestOn(between.line, a, b, c.wall);
-    for (int round = 0; round < 2 && between.kind == SnapKind::line && !c.beside; ++round) {
-        between.line = features_.closestLine(a + (b - a) * std::clamp(c.t, 0.0, 1.0), length);
-        if (!between.line.found) return c;
-        c.t = nearestOn(between.line, a, b, c.wall);
-    }
-    // Beside another line, that one may be nearer to the edge.
-    if (between.kind == SnapKind::line) c.wall = features_.closestLine(c.beside ? c.wall : a + (b - a) * std::clamp(c.t, 0.0, 1.0), length).point;
-    if (!(c.t > nearEnd && c.t < 1 - nearEnd)) return c;
-    c.tangent = between.line.tangent;
-    if (between.kind != SnapKind::line) {
-        const ClosestPoint on = index_.closest(c.wall, farOff * length);
-        if (!on) return c;
-        c.wall = on.point;
-    }
-    if (norm(a + (b - a) * c.t - c.wall) > farOff * length) return c;
-    const auto isNear = [&](std::size_t n) { return star_[n] && norm(c.wall - x_[n]) < nearStar * band_.h[p]; };
-    if (isNear(p) || isNear(q)) return c;
-    const Vec3 &f = x_[std::size_t(band_.frontNode[p])], &g = x_[std::size_t(band_.frontNode[q])];
-    c.front = f + (g - f) * c.t;
-    c.alive = !index_.firstHit(c.front, c.wall, 0.97);
-    return c;
-}
 
 Ring Inserter::ringOf(std::size_t face) const {
     Ring ring;
     for (auto he : front_.mesh.fh_range(FrontMesh::FaceHandle(static_cast<int>(face)))) {
         const std::int32_t v = front_.mesh.from_vertex_handle(he).idx();
-        ring.push_back({v, -1, star_[std::size_t(v)] != 0, false});
+        ring.push_back({v, -1, marks_.onLine[std::size_t(v)] != 0, false});
         const std::int32_t c = candidateOf_[std::size_t(front_.mesh.edge_handle(he).idx())];
         if (c >= 0 && candidates_[std::size_t(c)].alive) ring.push_back({-1, c, true, false});
     }
@@ -196,7 +81,7 @@ Ring Inserter::ringOf(std::size_t face) const {
 // Does the line that an end of a cut lies on, beside another line, lead to the other end?
 bool Inserter::runsAlong(const Place& from, const Place& to) const {
     if (from.candidate < 0) return false;
-    const Candidate& c = candidates_[std::size_t(from.candidate)];
+    const EdgeCrossing& c = candidates_[std::size_t(from.candidate)];
     const Vec3 way = wallAt(to) - c.wall;
     return c.beside && norm(way - c.tangent * dot(way, c.tangent)) < follows * band_.h[std::size_t(c.p)];
 }
@@ -206,11 +91,11 @@ bool Inserter::differ(const Ring& ring, std::size_t from, std::size_t to) const 
     if (runsAlong(ring[from], ring[to]) || runsAlong(ring[to], ring[from])) return true;
     for (std::size_t i = from + 1; i < to; ++i) {
         if (ring[i].star) continue;
-        const Foot& a = feet_[std::size_t(ring[i].vertex)];
+        const Foot& a = marks_.feet[std::size_t(ring[i].vertex)];
         for (std::size_t j = to + 1; j < ring.size() + from; ++j) {
             const Place& other = ring[j % ring.size()];
             if (other.star) continue;
-            const Foot& b = feet_[std::size_t(other.vertex)];
+            const Foot& b = marks_.feet[std::size_t(other.vertex)];
             if (a.found && b.found && (turns(a, b) || a.part != b.part)) return true;
         }
     }
@@ -342,7 +227,7 @@ void Inserter::apply(const std::vector<Cuts>& cuts) {
     std::vector<std::int32_t> vertexOf(candidates_.size(), -1);
     const auto lattice = static_cast<std::int32_t>(front_.corePoints);
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
-        const Candidate& c = candidates_[i];
+        const EdgeCrossing& c = candidates_[i];
         if (!c.alive) continue;
         const auto p = static_cast<std::size_t>(c.p), q = static_cast<std::size_t>(c.q);
         vertexOf[i] = static_cast<std::int32_t>(front_.front.size());
@@ -371,21 +256,14 @@ void Inserter::apply(const std::vector<Cuts>& cuts) {
 }
 
 void Inserter::findCandidates() {
-    const std::size_t edges = front_.mesh.n_edges();
-    std::vector<Candidate> all(edges);
-    parallelFor(edges, [&](std::size_t e) { all[e] = crossingOn(static_cast<std::int32_t>(e)); });
-    candidates_.clear();
-    candidateOf_.assign(edges, -1);
-    for (std::size_t e = 0; e < edges; ++e) {
-        if (!all[e].alive) continue;
-        candidateOf_[e] = static_cast<std::int32_t>(candidates_.size());
-        candidates_.push_back(all[e]);
-    }
+    candidates_ = findCrossings(front_, band_, index_, features_, x_, marks_);
+    candidateOf_.assign(front_.mesh.n_edges(), -1);
+    for (std::size_t i = 0; i < candidates_.size(); ++i) candidateOf_[std::size_t(candidates_[i].edge)] = static_cast<std::int32_t>(i);
     faces_.clear();
     for (std::size_t f = 0; f < front_.ownerCell.size(); ++f) {
         std::size_t stars = 0, crossed = 0;
         for (auto he : front_.mesh.fh_range(FrontMesh::FaceHandle(static_cast<int>(f)))) {
-            stars += star_[std::size_t(front_.mesh.from_vertex_handle(he).idx())];
+            stars += marks_.onLine[std::size_t(front_.mesh.from_vertex_handle(he).idx())];
             crossed += candidateOf_[std::size_t(front_.mesh.edge_handle(he).idx())] >= 0;
         }
         if (crossed > 0 || stars > 1) faces_.push_back(static_cast<std::int32_t>(f));
@@ -393,7 +271,6 @@ void Inserter::findCandidates() {
 }
 
 std::size_t Inserter::run() {
-    look();
     findCandidates();
     std::vector<Cuts> cuts;
     const auto cutAll = [&] {
@@ -402,7 +279,7 @@ std::size_t Inserter::run() {
     };
     cutAll();
     if (makeRoom(roomWanted(cuts), band_, index_, x_, front_) > 0) {
-        findCandidates();
+        followFront(band_, index_, x_, candidates_);
         cutAll();
     }
     while (prune(cuts)) cutAll();

@@ -1,0 +1,34 @@
+// Where wall edges still cross a line that the wall has no edge along: a sharp edge of the geometry, the line in which two
+// parts meet, the foot of a step beside another line.
+#pragma once
+#include "i2b/fit/between.h"
+#include "i2b/front/front.h"
+
+namespace i2b {
+
+// Per wall node of the band.
+struct WallMarks {
+    std::vector<Foot> feet;             // what it sees
+    std::vector<std::uint8_t> onLine;   // stands on a line that it is held to, or on a border between parts
+};
+
+WallMarks markWall(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x,
+                   const std::vector<Snap>& snaps);
+
+struct EdgeCrossing {
+    std::int32_t edge = -1, p = -1, q = -1; // of the front; its vertices
+    double t = 0;                           // share of the way from p to q
+    Vec3 front, wall;                       // m, the place on the edge of the front, and on the line
+    Vec3 tangent;                           // unit, of the line or border
+    bool beside = false;                    // an end of the edge stands on another line
+    bool alive = false;                     // false: there is none
+};
+
+// Those of the front's edges, in order. x: positions of the band's nodes.
+std::vector<EdgeCrossing> findCrossings(const Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features,
+                                        const std::vector<Vec3>& x, const WallMarks& marks);
+
+// After nodes of the front have moved. Those that geometry now parts from their place on the line are no longer alive.
+void followFront(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, std::vector<EdgeCrossing>& crossings);
+
+} // namespace i2b
