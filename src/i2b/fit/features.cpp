@@ -61,8 +61,11 @@ std::array<Crossing, 2> stepOf(const Band& band, const SurfaceIndex& index, cons
         // Most edges lie on what they stand on: that matters to the others alone.
         if (share == 0.5 && index.closest(way, steps * h)) return found;
         const Foot riser = footAt(index, way, fluid, h);
-        if (turns(feet[a], riser)) found[0] = crossingAt(band, features, x, lineBetween(index, features, feet[a], riser, fluid, h), p);
-        if (turns(feet[b], riser)) found[1] = crossingAt(band, features, x, lineBetween(index, features, feet[b], riser, fluid, h), q);
+        const auto lineTo = [&](const Foot& foot) { return turns(foot, riser) ? lineBetween(index, features, foot, riser, fluid, h) : Between{}; };
+        const Between top = lineTo(feet[a]), bottom = lineTo(feet[b]);
+        // Away from the middle of an edge that bridges a gap, planes meet where there is no step: one of its edges must be sharp.
+        if (share != 0.5 && top.kind != SnapKind::line && bottom.kind != SnapKind::line) continue;
+        found = {crossingAt(band, features, x, top, p), crossingAt(band, features, x, bottom, q)};
         if (found[0].node >= 0 || found[1].node >= 0) break;
     }
     return found;

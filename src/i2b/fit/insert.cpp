@@ -12,7 +12,7 @@ namespace {
 constexpr double follows = 0.2;      // of h: so near to a line what a cut along it ends at may be
 constexpr double onLine = 0.1;       // of h: a cut whose middle is so near to a line lies on it
 const double alongLine = std::cos(20 * 3.14159265358979323846 / 180);
-constexpr double worstCorner = 0.1;  // scaled Jacobian that a piece of a prism must have
+constexpr double worstCorner = 0.06; // scaled Jacobian that a piece of a prism must have
 constexpr std::size_t mostVertices = 8; // of a front face
 
 struct Place { // a vertex of a face that may be cut
