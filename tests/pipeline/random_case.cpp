@@ -1,5 +1,7 @@
 #include "pipeline/random_case.h"
+#include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <numbers>
 #include <random>
 
@@ -269,6 +271,11 @@ RandomCase randomCase(unsigned seed) {
     }
     c.soup = std::move(m.soup);
     return c;
+}
+
+unsigned firstRandomCase() {
+    const char* text = std::getenv("I2B_FIRST_CASE");
+    return text ? static_cast<unsigned>(std::max(0, std::atoi(text))) : 0;
 }
 
 } // namespace i2b::test

@@ -16,5 +16,7 @@ inline constexpr unsigned caseKinds = 10;
 
 // The case of a seed: its kind is seed % caseKinds, all else follows from a generator of that seed alone.
 RandomCase randomCase(unsigned seed);
+// Where the seeds of a run begin: I2B_FIRST_CASE of the environment, to hunt where no run has been; else 0.
+unsigned firstRandomCase();
 
 } // namespace i2b::test

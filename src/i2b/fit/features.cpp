@@ -258,7 +258,7 @@ std::size_t splitAlongFeatures(Front& front, const Band& band, const SurfaceInde
     const auto isSnapped = [&](std::size_t n) { return snaps[n].kind != SnapKind::none; };
     parallelFor(faces, [&](std::size_t f) {
         std::array<std::int32_t, 8> v{};
-        if (verticesOf(f, v) != 4) return;
+        if (verticesOf(f, v) != 4 || front.staysWhole(f)) return;
         double widest = 2; // cosine; below flatCorner for corners that ask for a cut
         for (std::size_t d = 0; d < 2; ++d) {
             const auto s = [&](std::size_t i) { return static_cast<std::size_t>(v[(i + d) % 4]); };

@@ -17,7 +17,7 @@ constexpr std::size_t mostVertices = 8; // of a front face
 
 struct Place { // a vertex of a face that may be cut
     std::int32_t vertex = -1;    // of the front; or
-    std::int32_t candidate = -1;
+    std::int32_t crossing = -1;
     bool star = false;           // stands on a line or border
     bool isEnd = false;          // of a cut
 };
@@ -45,15 +45,16 @@ class Inserter {
     bool liesOnLine(const Ring& ring, std::size_t from, std::size_t to) const;
     Foot footUnder(const Ring& ring, std::size_t from, std::size_t to) const;
     bool isValid(const Ring& ring) const;
-    void findCandidates();
+    bool isOfWholeFace(std::int32_t edge) const;
+    void lookForCrossings();
     std::vector<RoomWish> roomWanted(const std::vector<Cuts>& cuts) const;
     void wishRoom(const Ring& piece, std::vector<RoomWish>& wishes) const;
     bool prune(const std::vector<Cuts>& cuts);
     void apply(const std::vector<Cuts>& cuts);
-    const Vec3& wallAt(const Place& p) const { return p.vertex >= 0 ? x_[std::size_t(p.vertex)] : candidates_[std::size_t(p.candidate)].wall; }
-    double hAt(const Place& p) const { return band_.h[std::size_t(p.vertex >= 0 ? p.vertex : candidates_[std::size_t(p.candidate)].p)]; }
+    const Vec3& wallAt(const Place& p) const { return p.vertex >= 0 ? x_[std::size_t(p.vertex)] : crossings_[std::size_t(p.crossing)].wall; }
+    double hAt(const Place& p) const { return band_.h[std::size_t(p.vertex >= 0 ? p.vertex : crossings_[std::size_t(p.crossing)].p)]; }
     const Vec3& frontAt(const Place& p) const {
-        return p.vertex >= 0 ? x_[std::size_t(band_.frontNode[std::size_t(p.vertex)])] : candidates_[std::size_t(p.candidate)].front;
+        return p.vertex >= 0 ? x_[std::size_t(band_.frontNode[std::size_t(p.vertex)])] : crossings_[std::size_t(p.crossing)].front;
     }
 
     Front& front_;
@@ -62,8 +63,8 @@ class Inserter {
     const FeatureIndex& features_;
     std::vector<Vec3>& x_;
     const WallMarks marks_;
-    std::vector<EdgeCrossing> candidates_;
-    std::vector<std::int32_t> candidateOf_;  // per edge of the front; -1: none
+    std::vector<EdgeCrossing> crossings_;
+    std::vector<std::int32_t> crossingOf_;  // per edge of the front; -1: none
     std::vector<std::int32_t> faces_;        // that may be cut, ascending
 };
 
@@ -72,16 +73,16 @@ Ring Inserter::ringOf(std::size_t face) const {
     for (auto he : front_.mesh.fh_range(FrontMesh::FaceHandle(static_cast<int>(face)))) {
         const std::int32_t v = front_.mesh.from_vertex_handle(he).idx();
         ring.push_back({v, -1, marks_.onLine[std::size_t(v)] != 0, false});
-        const std::int32_t c = candidateOf_[std::size_t(front_.mesh.edge_handle(he).idx())];
-        if (c >= 0 && candidates_[std::size_t(c)].alive) ring.push_back({-1, c, true, false});
+        const std::int32_t c = crossingOf_[std::size_t(front_.mesh.edge_handle(he).idx())];
+        if (c >= 0 && crossings_[std::size_t(c)].alive) ring.push_back({-1, c, true, false});
     }
     return ring;
 }
 
 // Does the line that an end of a cut lies on, beside another line, lead to the other end?
 bool Inserter::runsAlong(const Place& from, const Place& to) const {
-    if (from.candidate < 0) return false;
-    const EdgeCrossing& c = candidates_[std::size_t(from.candidate)];
+    if (from.crossing < 0) return false;
+    const EdgeCrossing& c = crossings_[std::size_t(from.crossing)];
     const Vec3 way = wallAt(to) - c.wall;
     return c.beside && norm(way - c.tangent * dot(way, c.tangent)) < follows * band_.h[std::size_t(c.p)];
 }
@@ -202,32 +203,32 @@ std::vector<RoomWish> Inserter::roomWanted(const std::vector<Cuts>& cuts) const 
     return wishes;
 }
 
-// Gives up candidates of faces that cannot take them, and those that end no cut. False: nothing to give up.
+// Gives up crossings of faces that cannot take them, and those that end no cut. False: nothing to give up.
 bool Inserter::prune(const std::vector<Cuts>& cuts) {
-    std::vector<std::uint8_t> used(candidates_.size(), 0), refused(candidates_.size(), 0);
+    std::vector<std::uint8_t> used(crossings_.size(), 0), refused(crossings_.size(), 0);
     for (const Cuts& c : cuts) {
         for (const Ring& piece : c.pieces) {
             for (const Place& p : piece) {
-                if (p.candidate < 0) continue;
-                used[std::size_t(p.candidate)] |= p.isEnd;
-                refused[std::size_t(p.candidate)] |= !c.valid;
+                if (p.crossing < 0) continue;
+                used[std::size_t(p.crossing)] |= p.isEnd;
+                refused[std::size_t(p.crossing)] |= !c.valid;
             }
         }
     }
     bool any = false;
-    for (std::size_t i = 0; i < candidates_.size(); ++i) {
-        if (!candidates_[i].alive || (used[i] && !refused[i])) continue;
-        candidates_[i].alive = false;
+    for (std::size_t i = 0; i < crossings_.size(); ++i) {
+        if (!crossings_[i].alive || (used[i] && !refused[i])) continue;
+        crossings_[i].alive = false;
         any = true;
     }
     return any;
 }
 
 void Inserter::apply(const std::vector<Cuts>& cuts) {
-    std::vector<std::int32_t> vertexOf(candidates_.size(), -1);
+    std::vector<std::int32_t> vertexOf(crossings_.size(), -1);
     const auto lattice = static_cast<std::int32_t>(front_.corePoints);
-    for (std::size_t i = 0; i < candidates_.size(); ++i) {
-        const EdgeCrossing& c = candidates_[i];
+    for (std::size_t i = 0; i < crossings_.size(); ++i) {
+        const EdgeCrossing& c = crossings_[i];
         if (!c.alive) continue;
         const auto p = static_cast<std::size_t>(c.p), q = static_cast<std::size_t>(c.q);
         vertexOf[i] = static_cast<std::int32_t>(front_.front.size());
@@ -249,29 +250,38 @@ void Inserter::apply(const std::vector<Cuts>& cuts) {
         cut.face = faces_[i];
         for (const Ring& piece : cuts[i].pieces) {
             std::vector<std::int32_t>& polygon = cut.polygons.emplace_back();
-            for (const Place& p : piece) polygon.push_back(p.vertex >= 0 ? p.vertex : vertexOf[std::size_t(p.candidate)]);
+            for (const Place& p : piece) polygon.push_back(p.vertex >= 0 ? p.vertex : vertexOf[std::size_t(p.crossing)]);
         }
     }
     replaceFaces(front_, faceCuts);
 }
 
-void Inserter::findCandidates() {
-    candidates_ = findCrossings(front_, band_, index_, features_, x_, marks_);
-    candidateOf_.assign(front_.mesh.n_edges(), -1);
-    for (std::size_t i = 0; i < candidates_.size(); ++i) candidateOf_[std::size_t(candidates_[i].edge)] = static_cast<std::int32_t>(i);
+bool Inserter::isOfWholeFace(std::int32_t edge) const {
+    for (const unsigned side : {0u, 1u}) {
+        const auto face = front_.mesh.face_handle(front_.mesh.halfedge_handle(FrontMesh::EdgeHandle(edge), side));
+        if (face.is_valid() && front_.staysWhole(static_cast<std::size_t>(face.idx()))) return true;
+    }
+    return false;
+}
+
+void Inserter::lookForCrossings() {
+    crossings_ = findCrossings(front_, band_, index_, features_, x_, marks_);
+    std::erase_if(crossings_, [&](const EdgeCrossing& c) { return isOfWholeFace(c.edge); });
+    crossingOf_.assign(front_.mesh.n_edges(), -1);
+    for (std::size_t i = 0; i < crossings_.size(); ++i) crossingOf_[std::size_t(crossings_[i].edge)] = static_cast<std::int32_t>(i);
     faces_.clear();
     for (std::size_t f = 0; f < front_.ownerCell.size(); ++f) {
         std::size_t stars = 0, crossed = 0;
         for (auto he : front_.mesh.fh_range(FrontMesh::FaceHandle(static_cast<int>(f)))) {
             stars += marks_.onLine[std::size_t(front_.mesh.from_vertex_handle(he).idx())];
-            crossed += candidateOf_[std::size_t(front_.mesh.edge_handle(he).idx())] >= 0;
+            crossed += crossingOf_[std::size_t(front_.mesh.edge_handle(he).idx())] >= 0;
         }
-        if (crossed > 0 || stars > 1) faces_.push_back(static_cast<std::int32_t>(f));
+        if (!front_.staysWhole(f) && (crossed > 0 || stars > 1)) faces_.push_back(static_cast<std::int32_t>(f));
     }
 }
 
 std::size_t Inserter::run() {
-    findCandidates();
+    lookForCrossings();
     std::vector<Cuts> cuts;
     const auto cutAll = [&] {
         cuts.resize(faces_.size());
@@ -279,7 +289,7 @@ std::size_t Inserter::run() {
     };
     cutAll();
     if (makeRoom(roomWanted(cuts), band_, index_, x_, front_) > 0) {
-        followFront(band_, index_, x_, candidates_);
+        followFront(band_, index_, x_, crossings_);
         cutAll();
     }
     while (prune(cuts)) cutAll();

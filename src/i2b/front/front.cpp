@@ -1,6 +1,7 @@
 #include "i2b/front/front.h"
 #include "i2b/core/checksum.h"
 #include "i2b/core/error.h"
+#include <algorithm>
 #include <fmt/format.h>
 #include <limits>
 
@@ -144,6 +145,8 @@ void assignParts(Front& front, const SurfaceIndex& index) {
         if (hit) front.part[f] = index.surface().partOf[hit.triangle];
     });
 }
+
+bool Front::staysWhole(std::size_t face) const { return std::binary_search(whole.begin(), whole.end(), ownerCell[face]); }
 
 std::string Front::validate() const {
     const std::size_t n = mesh.n_vertices(), m = mesh.n_faces();

@@ -39,6 +39,7 @@ struct Front {
         double t = 0;                              // share of the way from the first to the second
     };
     std::vector<Inserted> inserted;
+    std::vector<std::int32_t> whole;               // owner cells, ascending, whose faces the fit must not cut
     std::int32_t corePoints = 0;                   // of the LatticeMesh
     // Core points behind the front that the fit has moved, by number.
     std::vector<std::int32_t> movedPoints;
@@ -50,6 +51,7 @@ struct Front {
         const auto& p = mesh.point(FrontMesh::VertexHandle(static_cast<int>(vertex)));
         return {p[0], p[1], p[2]};
     }
+    bool staysWhole(std::size_t face) const;
     std::size_t firstInserted() const { return front.size() - inserted.size(); } // vertex
     // "" or the first fault: open edges away from the domain's sides, isolated vertices, sizes of arrays.
     std::string validate() const;

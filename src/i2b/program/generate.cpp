@@ -1,37 +1,22 @@
 #include "i2b/program/generate.h"
-#include "i2b/assemble/assemble.h"
 #include "i2b/carve/carve.h"
 #include "i2b/core/checksum.h"
 #include "i2b/core/error.h"
 #include "i2b/core/memory.h"
-#include "i2b/fit/fit.h"
-#include "i2b/front/front.h"
 #include "i2b/geometry/features.h"
 #include "i2b/geometry/rims.h"
 #include "i2b/grid/build.h"
 #include "i2b/grid/cut.h"
-#include "i2b/layers/lay_on.h"
 #include "i2b/paint/paint.h"
 #include "i2b/paint/touched_parts.h"
-#include "i2b/quality/repair.h"
+#include "i2b/program/run_stage.h"
+#include "i2b/program/walls.h"
 #include "i2b/sizing/automatic.h"
 #include "i2b/sizing/estimate.h"
 #include <fmt/format.h>
 
 namespace i2b {
 namespace {
-
-constexpr int mostCuts = 4; // rounds of cutting walls under cells that cannot be made valid
-
-// Runs one stage under its name; count(result) is the number of items it reports.
-template <class Body, class Count>
-auto stage(Context& context, const char* name, const Body& body, const Count& count) {
-    Stage timed(context, name);
-    auto result = body();
-    timed.items = static_cast<std::uint64_t>(count(result));
-    returnFreedMemory();
-    return result;
-}
 
 void refuseTooLarge(const Surface& surface, const SizeField& field, int layers, bool gridOnly) {
     const double need = estimateBytes(surface, field, layers, gridOnly);
@@ -40,11 +25,6 @@ void refuseTooLarge(const Surface& surface, const SizeField& field, int layers, 
     throw Error(ErrorKind::input, fmt::format("this mesh would need about {:.1f} GB of memory", need * 1e-9),
                 fmt::format("{:.1f} GB are free", have * 1e-9),
                 "give a larger --size, a smaller --box, or run it on a larger machine");
-}
-
-void requireValid(const std::string& fault, const char* what) {
-    if (!fault.empty())
-        throw Error(ErrorKind::internal, fmt::format("{}: {}", what, fault), "", "please report the case");
 }
 
 // What the mesh has come to, by itself and beside the geometry.
@@ -72,29 +52,6 @@ void judge(MeshResult& out, const FeatureGraph& features, const FitSummary& fitt
     Checksum sum;
     sum.add(out.mesh.checksum());
     out.report.checksum = sum.hex();
-}
-
-// Assembles and repairs; where layer cells cannot be made valid the wall under them is cut and all is done again.
-RepairSummary assembleAndRepair(MeshResult& out, const LatticeMesh& lattice, Front& front, LayerStack& layers, const WallPlans& plans, const WallGuide& guide,
-                                Context& context) {
-    const GridResult& c = *out.cartesian;
-    const AssembleInput parts{lattice, c.kept, front, layers, c.surface.parts};
-    out.mesh = stage(
-        context, "assemble", [&] { return assemble(parts); }, [](const PolyMesh& m) { return m.cells; });
-    return stage(
-        context, "repair",
-        [&] {
-            RepairSummary r = repair(out.mesh, front, lattice, layers, startThickness, guide);
-            for (int round = 0; r.remaining > 0 && round < mostCuts; ++round) {
-                const std::vector<std::uint8_t> moved = std::move(r.movedWalls);
-                if (!cutUnderWrong(front, layers, plans, *c.index, static_cast<std::int32_t>(lattice.cellCount()), r.wrongCells)) break;
-                out.mesh = assemble(parts);
-                r = repair(out.mesh, front, lattice, layers, startThickness, guide);
-                for (std::size_t v = 0; v < moved.size(); ++v) r.movedWalls[v] |= moved[v];
-            }
-            return r;
-        },
-        [](const RepairSummary& r) { return r.retracted; });
 }
 
 } // namespace
@@ -155,10 +112,6 @@ MeshResult generate(const Options& options, Context& context) {
     out.cartesian = generateGrid(options, context, Road::mesh);
     const GridResult& c = *out.cartesian;
     auto lattice = std::make_unique<LatticeMesh>(c.grid, c.kept);
-    Front front = stage(
-        context, "front", [&] { return buildFront(*lattice, startThickness); },
-        [](const Front& f) { return f.ownerCell.size(); });
-    requireValid(front.validate(), "front");
     const FeatureGraph features = stage(
         context, "features",
         [&] {
@@ -173,30 +126,17 @@ MeshResult generate(const Options& options, Context& context) {
     notes.insert(notes.end(), features.notes.begin(), features.notes.end());
     const WallPlans plans = plansOf(options.layers, c.surface.parts);
     notes.insert(notes.end(), plans.notes.begin(), plans.notes.end());
-    FitSummary fitted = stage(
-        context, "fit",
-        [&] { return fitFront(front, *lattice, *c.index, features, options.fit, context, roomWanted(plans)); },
-        [](const FitSummary& s) { return s.wallNodes; });
-    assignParts(front, *c.index);
-    LaidLayers laid = stage(
-        context, "layers", [&] { return layOn(front, plans, *c.index); }, [](const LaidLayers& l) { return l.stack.cells(); });
-    LayerStack& layers = laid.stack;
-    const FeatureIndex lines(features);
-    RepairSummary repaired = assembleAndRepair(out, *lattice, front, layers, plans, {*c.index, lines, fitted.snaps, fitted.wishes}, context);
-    if (repaired.remaining > 0) {
-        throw Error(ErrorKind::internal, fmt::format("{} cells could not be made valid", repaired.remaining), "", "please report the case");
-    }
-    for (std::size_t v = 0; v < laid.movedWalls.size() && v < repaired.movedWalls.size(); ++v) repaired.movedWalls[v] |= laid.movedWalls[v];
+    Walls walls = makeWalls({c, *lattice, features, plans, options.fit}, out.mesh, context);
     out.report = reportOf(c, options, context);
-    out.report.fitCutShort = fitted.cutShort;
-    out.walls = measureLayers(front, layers);
-    out.report.layers = summarize(out.walls, front, c.surface.parts, options.layers.count);
+    out.report.fitCutShort = walls.fitted.cutShort;
+    out.walls = measureLayers(walls.front, walls.laid.stack);
+    out.report.layers = summarize(out.walls, walls.front, c.surface.parts, options.layers.count);
     out.walls.askedFirst = {}, out.walls.askedThickness = {}; // the report has them
     for (std::int32_t& cell : out.walls.wallCell) cell += static_cast<std::int32_t>(lattice->cellCount());
-    out.report.wallFaces = static_cast<std::int64_t>(front.ownerCell.size());
-    front = {}, layers = {}; // from here on the mesh speaks for itself
+    out.report.wallFaces = static_cast<std::int64_t>(walls.front.ownerCell.size());
+    walls.front = {}, walls.laid = {}; // from here on the mesh speaks for itself
     lattice.reset();
-    judge(out, features, fitted, repaired, options.quality, context);
+    judge(out, features, walls.fitted, walls.repaired, options.quality, context);
     return out;
 }
 
