@@ -57,6 +57,20 @@ void store(const Band& band, const std::vector<Vec3>& x, Front& front) {
     }
 }
 
+std::vector<Front::Hanging> hangingPoints(const Band& band) {
+    std::vector<Front::Hanging> hanging;
+    const auto pointOf = [&](std::int32_t node) { return band.corePoint[static_cast<std::size_t>(node) - band.walls]; };
+    for (std::size_t n = band.walls; n < band.walls + band.fronts; ++n) {
+        const std::span<const std::int32_t> parents = band.parents[n]; // of the core's nodes these are of the core, too
+        for (std::size_t i = 0; i + 1 < parents.size(); i += 2) {
+            const std::int32_t a = pointOf(parents[i]), b = pointOf(parents[i + 1]);
+            hanging.push_back({pointOf(static_cast<std::int32_t>(n)), {std::min(a, b), std::max(a, b)}});
+        }
+    }
+    std::sort(hanging.begin(), hanging.end());
+    return hanging;
+}
+
 // Lets go of nodes that could not come near the feature that they are held to: on the surface beside it they serve
 // better.
 void releaseUnreached(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x, std::vector<Snap>& snaps) {
@@ -98,6 +112,7 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     energy.budget = Budget(options.seconds);
     Band band = buildBand(mesh, front, rings, room);
     summary.wallNodes = band.walls;
+    front.hanging = hangingPoints(band);
     context.checkCancelled();
     const std::vector<Vec3> start = startPositions(band, index);
     const std::vector<Vec3> goal = goalPositions(band, index, start, options.sweeps);

@@ -44,6 +44,7 @@ class Inserter {
     bool differ(const Ring& ring, std::size_t from, std::size_t to) const;
     bool liesOnLine(const Ring& ring, std::size_t from, std::size_t to) const;
     Foot footUnder(const Ring& ring, std::size_t from, std::size_t to) const;
+    bool isOnOneEdge(const Ring& ring) const;
     bool isValid(const Ring& ring) const;
     bool isOfWholeFace(std::int32_t edge) const;
     void lookForCrossings();
@@ -139,10 +140,23 @@ bool Inserter::bestCut(const Ring& ring, std::size_t& from, std::size_t& to) con
     return most >= 0;
 }
 
+bool Inserter::isOnOneEdge(const Ring& ring) const {
+    std::vector<std::int32_t> vertices;
+    for (const Place& p : ring) {
+        if (p.vertex >= 0) {
+            vertices.push_back(p.vertex);
+        } else {
+            const EdgeCrossing& c = crossings_[std::size_t(p.crossing)];
+            vertices.insert(vertices.end(), {c.p, c.q});
+        }
+    }
+    return front_.areOnOneEdge(vertices);
+}
+
 // Corners of the prism on a piece; new vertices in the middle of an edge have none.
 bool Inserter::isValid(const Ring& ring) const {
     const std::size_t n = ring.size();
-    if (n > mostVertices) return false;
+    if (n > mostVertices || isOnOneEdge(ring)) return false;
     for (std::size_t i = 0; i < n; ++i) {
         const Place &before = ring[(i + n - 1) % n], &at = ring[i], &after = ring[(i + 1) % n];
         if (at.vertex < 0 && !at.isEnd) continue;

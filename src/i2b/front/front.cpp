@@ -148,6 +148,33 @@ void assignParts(Front& front, const SurfaceIndex& index) {
 
 bool Front::staysWhole(std::size_t face) const { return std::binary_search(whole.begin(), whole.end(), ownerCell[face]); }
 
+bool Front::areOnOneEdge(std::span<const std::int32_t> vertices) const {
+    std::array<std::int32_t, 3> points{}; // of the lattice; on more than three there is a corner
+    std::size_t n = 0;
+    const auto add = [&](std::int32_t point) {
+        if (std::find(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(n), point) != points.begin() + static_cast<std::ptrdiff_t>(n)) return true;
+        if (n == points.size()) return false;
+        points[n++] = point;
+        return true;
+    };
+    for (const std::int32_t v : vertices) {
+        const auto i = static_cast<std::size_t>(v);
+        if (i < firstInserted()) {
+            if (!add(corePoint[i])) return false;
+            continue;
+        }
+        for (const std::int32_t end : inserted[i - firstInserted()].ends) {
+            if (!add(corePoint[static_cast<std::size_t>(end)])) return false;
+        }
+    }
+    if (n < points.size()) return true;
+    for (std::size_t middle = 0; middle < n; ++middle) {
+        const auto [low, high] = std::minmax(points[(middle + 1) % 3], points[(middle + 2) % 3]);
+        if (std::binary_search(hanging.begin(), hanging.end(), Hanging{points[middle], {low, high}})) return true;
+    }
+    return false;
+}
+
 std::string Front::validate() const {
     const std::size_t n = mesh.n_vertices(), m = mesh.n_faces();
     if (front.size() != n || corePoint.size() != n || h.size() != n || size.size() != n || inside.size() != n || direction.size() != n || outside.size() != n) {

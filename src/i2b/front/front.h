@@ -12,6 +12,7 @@
 #include "i2b/front/front_mesh.h"
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,13 @@ struct Front {
         double t = 0;                              // share of the way from the first to the second
     };
     std::vector<Inserted> inserted;
+    // Core points of the front in the middle of an edge of a coarser cell, with the ends of that edge: ascending.
+    struct Hanging {
+        std::int32_t point = -1;
+        std::array<std::int32_t, 2> ends{-1, -1};
+        friend auto operator<=>(const Hanging&, const Hanging&) = default;
+    };
+    std::vector<Hanging> hanging;
     std::vector<std::int32_t> whole;               // owner cells, ascending, whose faces the fit must not cut
     std::int32_t corePoints = 0;                   // of the LatticeMesh
     // Core points behind the front that the fit has moved, by number.
@@ -52,6 +60,9 @@ struct Front {
         return {p[0], p[1], p[2]};
     }
     bool staysWhole(std::size_t face) const;
+    // Are these vertices all on one edge of a coarse cell? The face on its other side has them all: a face on them alone would
+    // be a part of that one. With an inserted vertex both its ends count.
+    bool areOnOneEdge(std::span<const std::int32_t> vertices) const;
     std::size_t firstInserted() const { return front.size() - inserted.size(); } // vertex
     // "" or the first fault: open edges away from the domain's sides, isolated vertices, sizes of arrays.
     std::string validate() const;

@@ -92,12 +92,20 @@ class Cutter {
         return std::min(scaled(front_.wall(v), front_.wall(a), front_.wall(b)),
                         scaled(front_.front[v], front_.front[a], front_.front[b]));
     }
+    // The piece from one vertex over the last and the first one to another.
+    bool isOnOneEdgeRound(const Polygon& p, Index from, Index to) const {
+        if (p.size() - from + to + 1 > 5) return false; // two ends, what hangs between them, and a vertex in each half
+        Polygon piece(p.begin() + static_cast<std::ptrdiff_t>(from), p.end());
+        piece.insert(piece.end(), p.begin(), p.begin() + static_cast<std::ptrdiff_t>(to) + 1);
+        return front_.areOnOneEdge(piece);
+    }
     Cut bestCut(const Polygon& p) const {
         const Index n = p.size();
         Cut best;
         for (Index i = 0; i + 2 < n; ++i) {
             for (Index j = i + 2; j < n; ++j) {
                 if (i == 0 && j + 1 == n) continue;
+                if (front_.areOnOneEdge({&p[i], j - i + 1}) || isOnOneEdgeRound(p, j, i)) continue;
                 const auto wrapped = [&](Index k) { return p[k % n]; };
                 Cut cut{i, j, 1, 0};
                 for (const double corner : {cornerAt(p[i], p[j], wrapped(i + 1)), cornerAt(p[i], wrapped(i + n - 1), p[j]),
