@@ -2,7 +2,7 @@
 // out is invalid; a star sees all cells at its points and points that have moved since.
 #include "i2b/quality/cell_star.h"
 #include "i2b/quality/mesh_faults.h"
-#include "quality/cell_mesh.h"
+#include "quality/shaken_block.h"
 #include <gtest/gtest.h>
 #include <numbers>
 #include <numeric>
@@ -12,23 +12,9 @@
 namespace i2b {
 namespace {
 
-constexpr int edge = 4; // cells of a block
-
 PolyMesh block(unsigned seed, double shake) {
     std::mt19937 random(seed);
-    std::uniform_real_distribution<double> off(-shake, shake);
-    std::vector<Vec3> points;
-    std::vector<test::CellLoops> cells;
-    const auto at = [](int x, int y, int z) { return (x * (edge + 1) + y) * (edge + 1) + z; };
-    for (int x = 0; x <= edge; ++x)
-        for (int y = 0; y <= edge; ++y)
-            for (int z = 0; z <= edge; ++z) points.push_back({x + off(random), y + off(random), z + off(random)});
-    for (int x = 0; x < edge; ++x)
-        for (int y = 0; y < edge; ++y)
-            for (int z = 0; z < edge; ++z)
-                cells.push_back(test::hexLoops({at(x, y, z), at(x + 1, y, z), at(x + 1, y + 1, z), at(x, y + 1, z), at(x, y, z + 1),
-                                                at(x + 1, y, z + 1), at(x + 1, y + 1, z + 1), at(x, y + 1, z + 1)}));
-    return test::meshOfCells(std::move(points), cells);
+    return test::shakenBlock(4, shake, random);
 }
 
 Badness judgeAll(const PolyMesh& mesh, const QualityLimits& limits, std::int32_t thinFrom) {

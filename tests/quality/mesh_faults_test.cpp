@@ -1,5 +1,6 @@
 #include "i2b/quality/mesh_faults.h"
-#include "quality/cell_mesh.h"
+#include "quality/shaken_block.h"
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <random>
 #include <set>
@@ -7,23 +8,7 @@
 namespace i2b {
 namespace {
 
-constexpr int edge = 5; // cells
-
-PolyMesh block(std::mt19937& random) {
-    std::uniform_real_distribution<double> off(-0.25, 0.25);
-    std::vector<Vec3> points;
-    std::vector<test::CellLoops> cells;
-    const auto at = [](int x, int y, int z) { return (x * (edge + 1) + y) * (edge + 1) + z; };
-    for (int x = 0; x <= edge; ++x)
-        for (int y = 0; y <= edge; ++y)
-            for (int z = 0; z <= edge; ++z) points.push_back({x + off(random), y + off(random), z + off(random)});
-    for (int x = 0; x < edge; ++x)
-        for (int y = 0; y < edge; ++y)
-            for (int z = 0; z < edge; ++z)
-                cells.push_back(test::hexLoops({at(x, y, z), at(x + 1, y, z), at(x + 1, y + 1, z), at(x, y + 1, z), at(x, y, z + 1),
-                                                at(x + 1, y, z + 1), at(x + 1, y + 1, z + 1), at(x, y + 1, z + 1)}));
-    return test::meshOfCells(std::move(points), cells);
-}
+PolyMesh block(std::mt19937& random) { return test::shakenBlock(5, 0.25, random); }
 
 QualityLimits strict() { // so that every kind of fault turns up
     QualityLimits limits;
@@ -107,10 +92,37 @@ TEST(MeshFaults, UpdateIsAsGoodAsAFreshLook) {
             EXPECT_EQ(faults.poorCells(count), fresh.poorCells(freshCount));
             EXPECT_EQ(count.all, freshCount.all);
             EXPECT_EQ(count.severe, freshCount.severe);
+            EXPECT_EQ(faults.undividedFaces(), fresh.undividedFaces());
         }
         bad += faults.badCells().size();
     }
     EXPECT_GT(bad, 0u);
+}
+
+// Faces that do not divide: those whose tetrahedra or whose twist the report names, each once.
+TEST(MeshFaults, UndividedFacesAreTheReports) {
+    std::int64_t tets = 0, twisted = 0;
+    for (unsigned seed = 0; seed < 10; ++seed) {
+        std::mt19937 random(seed);
+        const PolyMesh mesh = test::shakenBlock(5, 0.2 + 0.05 * seed, random);
+        const Rows cellFaces = buildCellFaces(mesh);
+        const std::vector<std::int32_t> undivided = MeshFaults(mesh, cellFaces, {}).undividedFaces();
+        const QualityReport report = measureQuality(mesh);
+        const QualityCheck* low = findCheck(report, "lowQualityTetFaces");
+        std::int64_t named = 0;
+        if (low) {
+            EXPECT_TRUE(std::ranges::includes(undivided, low->ids)) << "seed " << seed;
+            named = static_cast<std::int64_t>(low->ids.size());
+        }
+        const auto twist = std::ranges::find(report.dictionary, "minTwist", &DictionaryCheck::key);
+        ASSERT_NE(twist, report.dictionary.end());
+        const auto found = static_cast<std::int64_t>(undivided.size());
+        EXPECT_GE(found, std::max(named, twist->faces)) << "seed " << seed;
+        EXPECT_LE(found, named + twist->faces) << "seed " << seed;
+        tets += named, twisted += twist->faces;
+    }
+    EXPECT_GT(tets, 50);
+    EXPECT_GT(twisted, 50);
 }
 
 } // namespace

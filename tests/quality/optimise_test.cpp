@@ -1,4 +1,5 @@
 // Proves: on a box whose wall nodes were put in bad places, mend() makes the poor faces vanish and never raises the worst;
+// mendTets() makes all faces divide into tetrahedra within the limits;
 // pullIn() brings nodes back onto the geometry; snapWished() brings them to a line that they should be on, or leaves them
 // be; no cell turns bad; the same on any number of threads.
 #include "i2b/quality/optimise.h"
@@ -11,9 +12,9 @@
 namespace i2b::test {
 namespace {
 
-QualityLimits limitsOf() {
+QualityLimits limitsOf(double nonOrthogonality = 37) { // stricter than repair: a box is easy
     QualityLimits limits;
-    limits.nonOrthogonality = 37; // stricter than repair: a box is easy
+    limits.nonOrthogonality = nonOrthogonality;
     limits.skewness = 3.8;
     limits.faceWeight = 0.055, limits.volumeRatio = 0.02, limits.determinant = 0.0015;
     return limits;
@@ -21,8 +22,8 @@ QualityLimits limitsOf() {
 
 // A mesh around a box along the axes, with what the optimiser needs.
 struct Boxed {
-    Boxed()
-        : run(flushHalves(), stagesOptions()), cellFaces(buildCellFaces(run.mesh)), faults(run.mesh, cellFaces, limitsOf()),
+    explicit Boxed(const QualityLimits& limits = limitsOf())
+        : run(flushHalves(), stagesOptions()), cellFaces(buildCellFaces(run.mesh)), faults(run.mesh, cellFaces, limits),
           wishes(run.fitted.snaps.size()),
           optimiser(run.mesh, cellFaces, faults, run.front, run.layers, {*run.painted.index, run.features, run.fitted.snaps, wishes}) {}
 
@@ -113,6 +114,24 @@ TEST(Optimise, MendMakesPoorFacesVanish) {
     for (const std::size_t v : moved) EXPECT_LT(b.offWall(v), 1e-9); // wall nodes glide on the wall
     // What was kept up to date is what a fresh look says, and the front is the mesh's.
     EXPECT_TRUE(MeshFaults(b.run.mesh, b.cellFaces, limitsOf()).badCells().empty());
+    EXPECT_EQ(assemble({b.run.lattice, b.run.kept, b.run.front, b.run.layers, b.run.painted.soup.parts}).checksum(), b.run.mesh.checksum());
+}
+
+// Wall nodes beyond the diagonals of their faces: these divide again, and no other measure gets worse.
+TEST(Optimise, MendTetsMakesFacesDivide) {
+    Boxed b(limitsOf(64.5));
+    ASSERT_TRUE(b.faults.undividedFaces().empty());
+    const std::vector<std::size_t> moved = displaceAlong(b);
+    const std::size_t undivided = b.faults.undividedFaces().size();
+    ASSERT_GT(undivided, 5u);
+    const double worst = worstShare(b.run.mesh);
+    const std::int64_t left = b.optimiser.mendTets(12);
+    EXPECT_EQ(left, static_cast<std::int64_t>(b.faults.undividedFaces().size()));
+    EXPECT_EQ(left, 0);
+    EXPECT_LE(worstShare(b.run.mesh), worst * (1 + 1e-12));
+    EXPECT_TRUE(b.faults.badCells().empty());
+    for (const std::size_t v : moved) EXPECT_LT(b.offWall(v), 1e-9);
+    EXPECT_TRUE(MeshFaults(b.run.mesh, b.cellFaces, limitsOf()).undividedFaces().empty());
     EXPECT_EQ(assemble({b.run.lattice, b.run.kept, b.run.front, b.run.layers, b.run.painted.soup.parts}).checksum(), b.run.mesh.checksum());
 }
 

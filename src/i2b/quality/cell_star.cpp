@@ -1,4 +1,5 @@
 #include "i2b/quality/cell_star.h"
+#include "i2b/quality/face_tets.h"
 #include "i2b/quality/measures.h"
 #include <algorithm>
 #include <numbers>
@@ -10,6 +11,7 @@ using Index = std::size_t;
 constexpr double counts = 0.9;       // of a limit: what is better does not count
 constexpr double leastPyramid = 0.05; // cosine between a face's normal and the way to its centre from the cell's; of thin
                                       // cells three times the pyramid's volume over the cell's, half for each face of a box
+constexpr double leastTets = 0.08;    // share of a face's tetrahedra
 constexpr double flat = 1e-9;        // a pyramid below this cosine is wrong, as in mesh_faults.cpp
 constexpr double wrong = 30;         // of a cell inside out
 
@@ -30,7 +32,7 @@ bool CellStar::uses(std::int32_t face) const {
     return std::any_of(v.begin(), v.end(), [&](std::int32_t p) { return placeIn(points_, p) < points_.size(); });
 }
 
-void CellStar::gather(const std::vector<std::int32_t>& points, const std::vector<std::int32_t>& from) {
+const std::vector<std::int32_t>& CellStar::cellsAt(const std::vector<std::int32_t>& points, const std::vector<std::int32_t>& from) {
     points_ = points;
     cells_.clear();
     std::vector<std::int32_t> queue = from;
@@ -46,9 +48,15 @@ void CellStar::gather(const std::vector<std::int32_t>& points, const std::vector
         }
         if (touches) cells_.insert(at, c);
     }
+    return cells_;
+}
+
+void CellStar::take(const std::vector<std::int32_t>& points, const std::vector<std::int32_t>& cells) {
+    points_ = points;
+    if (&cells != &cells_) cells_ = cells;
     faces_.clear();
     for (std::int32_t c : cells_) {
-        for (std::int32_t f : cellFaces_[c]) faces_.push_back({f, -1, -1});
+        for (std::int32_t f : cellFaces_[c]) faces_.push_back({f, -1, -1, false});
     }
     std::sort(faces_.begin(), faces_.end(), [](const Face& a, const Face& b) { return a.face < b.face; });
     faces_.erase(std::unique(faces_.begin(), faces_.end(), [](const Face& a, const Face& b) { return a.face == b.face; }), faces_.end());
@@ -57,6 +65,7 @@ void CellStar::gather(const std::vector<std::int32_t>& points, const std::vector
         return i < cells_.size() ? static_cast<std::int32_t>(i) : -1;
     };
     for (Face& f : faces_) {
+        f.moves = uses(f.face);
         f.owner = inside(mesh_.owner[Index(f.face)]);
         if (f.face < mesh_.internalFaces()) f.neighbour = inside(mesh_.neighbour[Index(f.face)]);
     }
@@ -69,13 +78,25 @@ void CellStar::gather(const std::vector<std::int32_t>& points, const std::vector
         firstFace_.push_back(static_cast<std::uint32_t>(faceOf_.size()));
     }
     shapes_.resize(faces_.size()), own_.resize(cells_.size());
+    measured_ = false;
+}
+
+void CellStar::measureShapes() {
+    for (Index i = 0; i < faces_.size(); ++i) {
+        if (faces_[i].moves || !measured_) shapes_[i] = measureFace(mesh_, faces_[i].face);
+    }
+    measured_ = true;
+}
+
+std::span<const FaceShape> CellStar::shapesOf(Index i) {
+    row_.resize(firstFace_[i + 1] - firstFace_[i]);
+    for (Index k = 0; k < row_.size(); ++k) row_[k] = shapes_[faceOf_[firstFace_[i] + k]];
+    return row_;
 }
 
 void CellStar::judgeCell(Index i, Badness& out) {
     const std::span<const std::int32_t> faces = cellFaces_[cells_[i]];
-    row_.resize(faces.size());
-    for (Index k = 0; k < faces.size(); ++k) row_[k] = shapes_[faceOf_[firstFace_[i] + k]];
-    const CellMoments m = own_[i] = measureCell(mesh_, faces, row_, cells_[i]);
+    const CellMoments m = own_[i] = measureCell(mesh_, faces, shapesOf(i), cells_[i]);
     if (!(m.volume > 0)) out.invalid = true, add(out, wrong);
     for (Index k = 0; k < faces.size(); ++k) {
         const Vec3 arm = row_[k].centre - m.centre;
@@ -92,9 +113,6 @@ void CellStar::judgeCell(Index i, Badness& out) {
 }
 
 void CellStar::judgeFace(const Face& face, const FaceShape& shape, Badness& out) const {
-    const auto momentsOf = [&](std::int32_t place, std::int32_t cell) -> const CellMoments& {
-        return place >= 0 ? own_[Index(place)] : moments_[Index(cell)];
-    };
     const std::int32_t owner = mesh_.owner[Index(face.face)];
     const CellMoments& own = momentsOf(face.owner, owner);
     if (face.face >= mesh_.internalFaces()) {
@@ -112,23 +130,54 @@ void CellStar::judgeFace(const Face& face, const FaceShape& shape, Badness& out)
     add(out, std::min(wrong, limits_.volumeRatio / std::max(values.ratio, 1e-300)));
 }
 
-double CellStar::shortestEdgeAt(std::int32_t point) const {
-    double shortest2 = std::numeric_limits<double>::infinity();
-    for (const Face& f : faces_) {
-        const auto v = mesh_.face(f.face);
+void CellStar::judgeTets(const Face& face, const FaceShape& shape, TetLack& out) const {
+    const Vec3& own = momentsOf(face.owner, mesh_.owner[Index(face.face)]).centre;
+    const bool inner = face.face < mesh_.internalFaces();
+    const Vec3* nei = inner ? &momentsOf(face.neighbour, mesh_.neighbour[Index(face.face)]).centre : nullptr;
+    const double share = tetShare(mesh_, face.face, shape.centre, shape.area, own, nei, leastTets);
+    if (share < leastTets) out.sum += (leastTets - share) * (leastTets - share);
+    out.undivided = out.undivided || share < undividedShare;
+}
+
+// f(other end) for the edges of faces that end at a point.
+template <class F>
+void CellStar::forEdgesAt(std::int32_t point, const F& f) const {
+    for (const Face& face : faces_) {
+        const auto v = mesh_.face(face.face);
         for (Index i = 0; i < v.size(); ++i) {
             const std::int32_t next = v[i + 1 == v.size() ? 0 : i + 1];
-            if (v[i] == point || next == point) shortest2 = std::min(shortest2, norm2(mesh_.points[Index(v[i])] - mesh_.points[Index(next)]));
+            if (v[i] == point) f(next);
+            if (next == point) f(v[i]);
         }
     }
+}
+
+double CellStar::shortestEdgeAt(std::int32_t point) const {
+    double shortest2 = std::numeric_limits<double>::infinity();
+    forEdgesAt(point, [&](std::int32_t end) { shortest2 = std::min(shortest2, norm2(mesh_.points[Index(end)] - mesh_.points[Index(point)])); });
     return std::sqrt(shortest2);
 }
 
+Vec3 CellStar::middleOf(std::int32_t point) const {
+    Vec3 sum;
+    double n = 0;
+    forEdgesAt(point, [&](std::int32_t end) { sum += mesh_.points[Index(end)], ++n; });
+    return n > 0 ? sum / n : mesh_.points[Index(point)];
+}
+
 Badness CellStar::judge() {
-    for (Index i = 0; i < faces_.size(); ++i) shapes_[i] = measureFace(mesh_, faces_[i].face);
+    measureShapes();
     Badness out;
     for (Index i = 0; i < cells_.size(); ++i) judgeCell(i, out);
     for (Index i = 0; i < faces_.size(); ++i) judgeFace(faces_[i], shapes_[i], out);
+    return out;
+}
+
+TetLack CellStar::judgeTets() {
+    measureShapes();
+    for (Index i = 0; i < cells_.size(); ++i) own_[i] = measureCell(mesh_, cellFaces_[cells_[i]], shapesOf(i), cells_[i]);
+    TetLack out;
+    for (Index i = 0; i < faces_.size(); ++i) judgeTets(faces_[i], shapes_[i], out);
     return out;
 }
 

@@ -13,27 +13,47 @@ struct Badness {
     bool invalid = false;  // a cell without a positive volume, or a face pyramid that points the wrong way
 };
 
+// What the tetrahedra of faces lack (face_tets.h).
+struct TetLack {
+    double sum = 0;         // of the squares
+    bool undivided = false; // a face does not divide
+};
+
 class CellStar {
   public:
     // Keeps references. moments: of all cells, as they are now; those of the star's own cells are worked out anew.
     CellStar(const PolyMesh& mesh, const Rows& cellFaces, const CellMoments* moments, const QualityLimits& limits, std::int32_t thinFrom)
         : mesh_(mesh), cellFaces_(cellFaces), moments_(moments), limits_(limits), thinFrom_(thinFrom) {}
 
-    // All cells that use one of the points (sorted); from: one that does for each group of points that hang together.
-    void gather(const std::vector<std::int32_t>& points, const std::vector<std::int32_t>& from);
+    // All cells that use one of the points (sorted): ascending. from: one that does for each group of points that hang together.
+    const std::vector<std::int32_t>& cellsAt(const std::vector<std::int32_t>& points, const std::vector<std::int32_t>& from);
+    // The star of the points: cells is what cellsAt() gives for them.
+    void take(const std::vector<std::int32_t>& points, const std::vector<std::int32_t>& cells);
+    void gather(const std::vector<std::int32_t>& points, const std::vector<std::int32_t>& from) { take(points, cellsAt(points, from)); }
     const std::vector<std::int32_t>& cells() const { return cells_; } // ascending
-    // With the mesh's points as they are now.
+    // With these points of the mesh as they are now; no others may have moved since.
     Badness judge();
+    // The same; in no other figure.
+    TetLack judgeTets();
     // m, of the edges that end at the point, one of those gathered.
     double shortestEdgeAt(std::int32_t point) const;
+    // Mean of the other ends of these edges, each as often as faces have it.
+    Vec3 middleOf(std::int32_t point) const;
 
   private:
     struct Face {
         std::int32_t face, owner, neighbour; // cells: place in cells_, or -1
+        bool moves;                          // uses one of the points
     };
     bool uses(std::int32_t face) const;
+    template <class F>
+    void forEdgesAt(std::int32_t point, const F& f) const;
+    void measureShapes();
     void judgeCell(std::size_t i, Badness& out);
     void judgeFace(const Face& face, const FaceShape& shape, Badness& out) const;
+    void judgeTets(const Face& face, const FaceShape& shape, TetLack& out) const;
+    std::span<const FaceShape> shapesOf(std::size_t i);
+    const CellMoments& momentsOf(std::int32_t place, std::int32_t cell) const { return place >= 0 ? own_[std::size_t(place)] : moments_[std::size_t(cell)]; }
 
     const PolyMesh& mesh_;
     const Rows& cellFaces_;
@@ -45,6 +65,7 @@ class CellStar {
     std::vector<std::uint32_t> faceOf_, firstFace_;    // the faces of each cell, places in faces_
     std::vector<FaceShape> shapes_, row_;
     std::vector<CellMoments> own_;
+    bool measured_ = false;                            // shapes_ has the faces that do not move
 };
 
 } // namespace i2b

@@ -1,5 +1,6 @@
 #include "i2b/quality/mesh_faults.h"
 #include "i2b/core/parallel.h"
+#include "i2b/quality/face_tets.h"
 #include "i2b/quality/measures.h"
 #include "i2b/quality/tally.h"
 #include <algorithm>
@@ -61,6 +62,7 @@ void MeshFaults::measureFaceAt(std::int32_t face) {
             flags |= (values.weight < limits_.faceWeight ? lowWeight : 0) | (values.ratio < limits_.volumeRatio ? lowRatio : 0);
     }
     if (faceSkewness(mesh_, face, shape, own.centre, neighbour, limits_.skewness) > limits_.skewness) flags |= skew;
+    if (tetShare(mesh_, face, shape.centre, shape.area, own.centre, neighbour, undividedShare) < undividedShare) flags |= undivided;
     faceFlags_[Index(face)] = static_cast<std::uint8_t>(flags);
 }
 
@@ -126,7 +128,7 @@ std::vector<std::int32_t> MeshFaults::poorCells(FaultCount& faults, bool severeO
     Index determinants = 0;
     std::vector<std::int32_t> cells;
     for (Index f = 0; f < faceFlags_.size(); ++f) {
-        if (faceFlags_[f] == 0) continue;
+        if ((faceFlags_[f] & ~undivided) == 0) continue;
         bool named = false;
         for (Index k = 0; k < ofFaces.size(); ++k)
             if (faceFlags_[f] & ofFaces[k]) named |= found[k]++ < limit && (k < severeKinds || !severeOnly);
@@ -142,6 +144,13 @@ std::vector<std::int32_t> MeshFaults::poorCells(FaultCount& faults, bool severeO
     std::sort(cells.begin(), cells.end());
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
     return cells;
+}
+
+std::vector<std::int32_t> MeshFaults::undividedFaces() const {
+    std::vector<std::int32_t> faces;
+    for (Index f = 0; f < faceFlags_.size(); ++f)
+        if (faceFlags_[f] & undivided) faces.push_back(static_cast<std::int32_t>(f));
+    return faces;
 }
 
 } // namespace i2b

@@ -33,10 +33,12 @@ class MeshFaults {
     // Cells at both sides of the faces over the limits and cells over theirs: of each kind of fault those that come
     // first, as many as a report names. severeOnly: those of non-orthogonal and skew faces.
     std::vector<std::int32_t> poorCells(FaultCount& faults, bool severeOnly = false) const;
+    // Faces that do not divide into tetrahedra (face_tets.h); these count nowhere else.
+    std::vector<std::int32_t> undividedFaces() const;
 
   private:
     enum CellFlag : std::uint8_t { bad = 1, lowDeterminant = 2 };
-    enum FaceFlag : std::uint8_t { nonOrthogonal = 1, skew = 2, lowWeight = 4, lowRatio = 8 };
+    enum FaceFlag : std::uint8_t { nonOrthogonal = 1, skew = 2, lowWeight = 4, lowRatio = 8, undivided = 16 };
     void measureCellAt(std::int32_t cell, CellFaceShapes& shapes);
     void measureFaceAt(std::int32_t face);
     std::vector<std::int32_t> cellsAround(const std::vector<std::int32_t>& seeds);

@@ -27,6 +27,8 @@ class Optimiser {
     // The nodes of poor and wrong cells, until nothing gets better. Gives how many moves were made. mayLeave: wall nodes
     // need not stay on the geometry.
     std::int64_t mend(int sweeps, bool mayLeave = false);
+    // The nodes of faces that do not divide into tetrahedra, within all other limits. Gives how many such faces are left.
+    std::int64_t mendTets(int sweeps);
     // Columns of poor and wrong cells more or less bent.
     std::int64_t bend();
     // Nodes to the features that they should be on; those that get there are held to them.
@@ -42,6 +44,9 @@ class Optimiser {
     };
     struct Worker;
     std::vector<Task> tasksOf(const std::vector<std::int32_t>& cells) const;
+    std::vector<Task> tasksOfFaces(const std::vector<std::int32_t>& faces) const;
+    void addNodes(std::int32_t face, std::int32_t cell, std::vector<std::pair<MeshNode, std::int32_t>>& found) const;
+    static std::vector<Task> asTasks(std::vector<std::pair<MeshNode, std::int32_t>> found);
     std::vector<Task> tasksOff() const;
     std::vector<std::vector<std::uint32_t>> colour(const std::vector<Task>& tasks) const;
     template <class Move>
@@ -51,6 +56,7 @@ class Optimiser {
     bool targetOf(std::int32_t vertex, Vec3& target) const;
     bool bendNode(const Task& task, Worker& worker);
     bool mendNode(const Task& task, Worker& worker);
+    bool mendNodeTets(const Task& task, Worker& worker);
     float* bendOf(const MeshNode& wall);
     bool fitsAt(const Task& task, Worker& worker, const Vec3& to, const Badness& before);
     bool comeTo(const Task& task, Worker& worker, const Vec3& to, const Badness& before, double shortest);

@@ -1,0 +1,96 @@
+#include "i2b/quality/face_tets.h"
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+namespace i2b {
+namespace {
+
+using Index = std::size_t;
+constexpr double least = -2;
+constexpr double leastTwist = 0.02; // cosine: minTwist of OpenFOAM's mesh quality dictionary
+constexpr double flat2 = 1e-20; // of the squared size of a face: a warp that no cell centre sees
+
+// value / sqrt(size2), where that is less than enough; else enough. Most faces are far from any limit and need no root.
+double shareBelow(double enough, double value, double size2) {
+    if (value > 0 && value * value >= enough * enough * size2) return enough;
+    return size2 > 0 ? value / std::sqrt(size2) : least;
+}
+
+// One cell's centre, as seen from the centre of a face.
+struct Apex {
+    Vec3 place;        // m
+    double height = 0; // m, over the face's plane, on the cell's own side
+
+    // twice: of a triangle through p, its area vector out of the owner, m^2.
+    double share(const Vec3& p, const Vec3& twice, double sign, double enough) const {
+        if (!(height > 0)) return least;
+        return shareBelow(enough, sign * dot(twice, p - place), norm2(twice) * height * height);
+    }
+};
+
+class Face {
+  public:
+    Face(const PolyMesh& mesh, std::int32_t face, const Vec3& centre, const Vec3& area, const Vec3& owner, const Vec3* neighbour, double enough)
+        : v_(mesh.face(face)), points_(mesh.points), centre_(centre), enough_(enough) {
+        const Vec3 normal = normalized(area);
+        apexes_[0] = {owner - centre, dot(normal, centre - owner)};
+        if (neighbour) apexes_[count_++] = {*neighbour - centre, dot(normal, *neighbour - centre)};
+        across_ = normalized((neighbour ? *neighbour : centre) - owner);
+    }
+    bool isFlatQuad() const {
+        if (v_.size() != 4) return v_.size() == 3;
+        return norm2(at(0) - at(1) + at(2) - at(3)) <= flat2 * norm2(at(0) - at(2));
+    }
+    double aroundCentre() const {
+        double worst = enough_;
+        Vec3 here = at(0);
+        for (Index i = 1; i <= v_.size(); ++i) {
+            const Vec3 next = at(i), twice = cross(here, next);
+            const double turn = shareBelow(enough_ + leastTwist, dot(twice, across_), norm2(twice));
+            worst = std::min(worst, share(here, twice));
+            if (turn < enough_ + leastTwist) worst = std::min(worst, turn - leastTwist);
+            here = next;
+        }
+        return worst;
+    }
+    double bestFan(double wanted) const {
+        double best = least;
+        for (Index base = 0; base < v_.size() && best < wanted; ++base) {
+            const Vec3 from = at(base);
+            double worst = enough_;
+            for (Index i = 1; i + 1 < v_.size() && worst > best; ++i)
+                worst = std::min(worst, share(from, cross(at(base + i) - from, at(base + i + 1) - from)));
+            best = std::max(best, worst);
+        }
+        return best;
+    }
+
+  private:
+    Vec3 at(Index i) const { return points_[Index(v_[i < v_.size() ? i : i - v_.size()])] - centre_; }
+    double share(const Vec3& p, const Vec3& twice) const {
+        double worst = enough_;
+        for (Index k = 0; k < count_; ++k) worst = std::min(worst, apexes_[k].share(p, twice, k == 0 ? 1 : -1, enough_));
+        return worst;
+    }
+
+    std::span<const std::int32_t> v_;
+    std::span<const Vec3> points_;
+    Vec3 centre_, across_;
+    double enough_;
+    std::array<Apex, 2> apexes_;
+    Index count_ = 1;
+};
+
+} // namespace
+
+double tetShare(const PolyMesh& mesh, std::int32_t face, const Vec3& centre, const Vec3& area, const Vec3& owner, const Vec3* neighbour,
+                double enough) {
+    const Face f(mesh, face, centre, area, owner, neighbour, enough);
+    if (f.isFlatQuad()) return enough;
+    const double around = f.aroundCentre();
+    return std::max(least, std::min(around, f.bestFan(around)));
+}
+
+} // namespace i2b

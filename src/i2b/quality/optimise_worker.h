@@ -1,0 +1,77 @@
+// What a thread of the optimiser needs to try moves.
+#pragma once
+#include "i2b/quality/cell_star.h"
+#include "i2b/quality/optimise.h"
+#include <algorithm>
+
+namespace i2b {
+
+struct Optimiser::Worker {
+    Worker(Optimiser& o) : optimiser(o), star(o.mesh_, o.cellFaces_, o.faults_.moments(), o.faults_.limits(), o.faults_.thinFrom()) {}
+
+    void begin(const Task& t) {
+        hang(t);
+        star.take(points, t.cells);
+    }
+    // The cells at all points that hang on the node.
+    const std::vector<std::int32_t>& cellsOf(const Task& t) {
+        hang(t);
+        return star.cellsAt(points, {t.cell});
+    }
+    void hang(const Task& t) {
+        node = t.node;
+        from = optimiser.nodes_.place(node);
+        moved.clear();
+        optimiser.nodes_.follow(node, from, moved);
+        points.clear();
+        for (const auto& [p, x] : moved) points.push_back(p);
+        std::sort(points.begin(), points.end());
+        points.erase(std::unique(points.begin(), points.end()), points.end());
+    }
+    Badness at(const Vec3& to) {
+        put(to);
+        return star.judge();
+    }
+    TetLack tetsAt(const Vec3& to) {
+        put(to);
+        return star.judgeTets();
+    }
+    void put(const Vec3& to) {
+        moved.clear();
+        optimiser.nodes_.follow(node, to, moved);
+        for (const auto& [p, x] : moved) optimiser.mesh_.points[static_cast<std::size_t>(p)] = x;
+    }
+    // Unit; 0 where there is none. value: of the places around, `here` where the node is; axes of the sides that it lies in are
+    // left alone.
+    template <class F>
+    Vec3 descent(double here, double step, std::uint8_t outside, const F& value) const {
+        Vec3 down;
+        for (int axis = 0; axis < 3; ++axis) {
+            if (outside >> (2 * axis) & 3) continue;
+            Vec3 to = from;
+            to[axis] += step;
+            down[axis] = here - value(to);
+        }
+        return normalized(down);
+    }
+    // Of those at the node where it is.
+    double shortestEdge() const { return star.shortestEdgeAt(ownPoint()); }
+    // Of its neighbours, with the node where it is.
+    Vec3 middle() const { return star.middleOf(ownPoint()); }
+    // Of a front or core node the first of those that hang on it; of a wall node the last of its stack, at the wall.
+    std::int32_t ownPoint() const { return node.kind == MeshNode::wall ? moved.back().first : moved.front().first; }
+    // Leaves the node at a place.
+    void end(const Vec3& to) {
+        put(to);
+        if (!(to == from)) optimiser.nodes_.moveTo(node, to);
+    }
+
+    Optimiser& optimiser;
+    CellStar star;
+    MeshNode node;
+    Vec3 from;
+    MeshNodes::Moved moved;
+    std::vector<std::int32_t> points;
+};
+
+} // namespace i2b
