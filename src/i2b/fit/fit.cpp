@@ -1,5 +1,6 @@
 #include "i2b/fit/fit.h"
 #include "i2b/core/parallel.h"
+#include "i2b/fit/bends.h"
 #include "i2b/fit/corner.h"
 #include "i2b/fit/folds.h"
 #include "i2b/fit/insert.h"
@@ -158,6 +159,7 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     for (std::uint8_t a : active) summary.active += a;
     store(band, x, front);
     if (options.features) seekOnce(front, band, index, features, x, snaps, summary);
+    if (options.features) summary.split += cutAcrossBends(front, index);
     summary.snaps = std::move(snaps);
     return summary;
 }

@@ -52,6 +52,8 @@ class Optimiser {
     template <class Move>
     std::int64_t sweep(std::vector<Task>& tasks, const Move& move);
     bool isFree(const MeshNode& node, const Vec3& to) const;
+    bool keepsFolds(const MeshNode& node, const Vec3& to) const;
+    bool isHeld(const MeshNode& wall) const;
     Vec3 onWall(const MeshNode& node, const Vec3& from, const Vec3& to) const;
     bool targetOf(std::int32_t vertex, Vec3& target) const;
     bool bendNode(const Task& task, Worker& worker);

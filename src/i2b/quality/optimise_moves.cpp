@@ -1,6 +1,7 @@
 #include "i2b/fit/corner.h"
 #include "i2b/quality/optimise_worker.h"
 #include <algorithm>
+#include <cmath>
 
 namespace i2b {
 namespace {
@@ -9,6 +10,7 @@ using Index = std::size_t;
 constexpr double probe = 1e-3;        // of h: step of the differences that give the direction of descent
 constexpr double settled = 0.01;      // of h: nodes nearer to the geometry are on it
 constexpr double crossing = 0.05;     // of h: so near to its end a way may meet geometry
+const double folded = std::cos(25 * 3.14159265358979323846 / 180); // wall faces that a sharp edge parts
 constexpr double enough = 0.5;         // of the sum: what is less need not be bettered
 constexpr double leastGain = 1e-3;    // of the sum: what a move must bring
 constexpr double leastEdge = 0.015;   // of h: no nearer may a node come to another for the wall's sake
@@ -47,7 +49,7 @@ bool Optimiser::isFree(const MeshNode& node, const Vec3& to) const {
 Vec3 Optimiser::onWall(const MeshNode& node, const Vec3& from, const Vec3& to) const {
     if (node.kind != MeshNode::wall || mayLeave_ || front_.outside[Index(node.id)] != 0) return to;
     const double h = front_.h[Index(node.id)];
-    if (Index(node.id) < guide_.snaps.size() && guide_.snaps[Index(node.id)].kind != SnapKind::none) {
+    if (isHeld(node)) {
         const FeatureIndex::Line was = snapLine(guide_.index, guide_.features, guide_.snaps[Index(node.id)], from, h);
         if (norm(was.point - from) <= settled * h) return snapLine(guide_.index, guide_.features, guide_.snaps[Index(node.id)], to, h).point;
     }
@@ -85,6 +87,38 @@ bool Optimiser::mendNode(const Task& task, Worker& worker) {
     return !(best == from);
 }
 
+// To a feature?
+bool Optimiser::isHeld(const MeshNode& wall) const {
+    return Index(wall.id) < guide_.snaps.size() && guide_.snaps[Index(wall.id)].kind != SnapKind::none;
+}
+
+// Does the wall stay folded along the lines that its nodes are held to, with a node of it elsewhere?
+bool Optimiser::keepsFolds(const MeshNode& node, const Vec3& to) const {
+    if (node.kind != MeshNode::wall) return true;
+    const FrontMesh& wall = front_.mesh;
+    const auto onLine = [&](int v) { return Index(v) >= guide_.snaps.size() || guide_.snaps[Index(v)].kind != SnapKind::none; }; // inserted ones are
+    const auto normalOf = [&](FrontMesh::FaceHandle f, bool moved) {
+        const auto place = [&](int v) { return moved && v == node.id ? to : front_.wall(Index(v)); };
+        Vec3 first, last, twice;
+        int n = 0;
+        for (auto v : wall.fv_range(f)) {
+            const Vec3 p = place(v.idx());
+            if (n++ == 0) first = p;
+            else twice += cross(last - first, p - first);
+            last = p;
+        }
+        return normalized(twice);
+    };
+    for (auto f : wall.vf_range(FrontMesh::VertexHandle(node.id))) {
+        for (auto he : wall.fh_range(f)) {
+            const auto other = wall.opposite_face_handle(he);
+            if (!other.is_valid() || !onLine(wall.from_vertex_handle(he).idx()) || !onLine(wall.to_vertex_handle(he).idx())) continue;
+            if (dot(normalOf(f, false), normalOf(other, false)) <= folded && dot(normalOf(f, true), normalOf(other, true)) > folded) return false;
+        }
+    }
+    return true;
+}
+
 bool Optimiser::mendNodeTets(const Task& task, Worker& worker) {
     const std::uint8_t outside = nodes_.outside(task.node);
     if (task.node.kind == MeshNode::wall && outside != 0) return false;
@@ -99,7 +133,7 @@ bool Optimiser::mendNodeTets(const Task& task, Worker& worker) {
     const auto tryStep = [&](const Vec3& step) {
         const Vec3 to = onWall(task.node, from, from + step);
         const double tets = worker.tetsAt(to).sum;
-        if (tets < least && mayStand(worker.at(to), limits) && isFree(task.node, to)) least = tets, best = to;
+        if (tets < least && mayStand(worker.at(to), limits) && isFree(task.node, to) && keepsFolds(task.node, to)) least = tets, best = to;
     };
     for (const double share : towardsMiddle) tryStep(toMiddle * share);
     if (least > enough * before.sum) {

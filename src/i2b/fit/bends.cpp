@@ -1,0 +1,107 @@
+#include "i2b/fit/bends.h"
+#include "i2b/core/parallel.h"
+#include "i2b/front/replace_faces.h"
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace i2b {
+namespace {
+
+constexpr double across = 0.03;      // of h: a quad whose middle is farther off cuts across something
+constexpr double gain = 0.8;         // share of that, at most, that the pieces may be off on average
+constexpr double worstCorner = 0.1;  // scaled Jacobian that the prisms of the pieces must have
+const double tilted = std::cos(25 * 3.14159265358979323846 / 180);
+
+using Quad = std::array<std::size_t, 4>; // vertices
+
+class BendCutter {
+  public:
+    BendCutter(const Front& front, const SurfaceIndex& index) : front_(front), index_(index) {}
+    // The vertex that the better cut starts from, 0 or 1; -1: none.
+    int cutOf(const Quad& q) const;
+
+  private:
+    struct Piece {
+        double off = 0;    // m, of its middle
+        double cosine = 1; // of its normal with the geometry's
+    };
+    Piece pieceOf(std::span<const Vec3> x, double h) const;
+    bool isSound(std::size_t a, std::size_t b, std::size_t c) const;
+
+    const Front& front_;
+    const SurfaceIndex& index_;
+};
+
+BendCutter::Piece BendCutter::pieceOf(std::span<const Vec3> x, double h) const {
+    Vec3 middle, normal;
+    for (const Vec3& p : x) middle += p;
+    middle *= 1.0 / static_cast<double>(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) normal += cross(x[i] - middle, x[i + 1 == x.size() ? 0 : i + 1] - middle);
+    const ClosestPoint c = index_.closest(middle, h);
+    if (!c) return {h, 0};
+    return {c.distance, std::abs(dot(normalized(normal), index_.normal(c.triangle)))};
+}
+
+// Corners of the prism on a triangle.
+bool BendCutter::isSound(std::size_t a, std::size_t b, std::size_t c) const {
+    const std::array<std::size_t, 3> v{a, b, c};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t at = v[i], next = v[(i + 1) % 3], before = v[(i + 2) % 3];
+        const Vec3 up = normalized(front_.front[at] - front_.wall(at));
+        const auto corner = [&](const Vec3& p, const Vec3& q, const Vec3& r) { return dot(cross(normalized(r - p), normalized(q - p)), up); };
+        if (corner(front_.wall(at), front_.wall(next), front_.wall(before)) < worstCorner) return false;
+        if (corner(front_.front[at], front_.front[next], front_.front[before]) < worstCorner) return false;
+    }
+    return true;
+}
+
+int BendCutter::cutOf(const Quad& q) const {
+    const double h = front_.h[q[0]];
+    const std::array<Vec3, 4> x{front_.wall(q[0]), front_.wall(q[1]), front_.wall(q[2]), front_.wall(q[3])};
+    const Piece whole = pieceOf(x, h);
+    if (whole.off <= across * h) return -1;
+    int best = -1;
+    double least = gain * whole.off;
+    for (const int d : {0, 1}) {
+        const auto i = static_cast<std::size_t>(d), j = i + 1, k = i + 2, l = (i + 3) % 4;
+        const Piece one = pieceOf(std::array{x[i], x[j], x[k]}, h), other = pieceOf(std::array{x[i], x[k], x[l]}, h);
+        const double off = 0.5 * (one.off + other.off);
+        if (!(off < least) || std::min(one.cosine, other.cosine) < std::min(tilted, whole.cosine)) continue;
+        if (!isSound(q[i], q[j], q[k]) || !isSound(q[i], q[k], q[l])) continue;
+        least = off, best = d;
+    }
+    return best;
+}
+
+} // namespace
+
+std::size_t cutAcrossBends(Front& front, const SurfaceIndex& index) {
+    const BendCutter cutter(front, index);
+    const std::size_t faces = front.ownerCell.size();
+    const auto quadOf = [&](std::size_t f, Quad& q) {
+        std::size_t n = 0;
+        for (auto v : front.mesh.fv_range(FrontMesh::FaceHandle(static_cast<int>(f)))) {
+            if (n < 4) q[n] = static_cast<std::size_t>(v.idx());
+            ++n;
+        }
+        return n == 4 && !front.staysWhole(f);
+    };
+    std::vector<std::int8_t> cut(faces, -1);
+    parallelFor(faces, [&](std::size_t f) {
+        Quad q{};
+        if (quadOf(f, q)) cut[f] = static_cast<std::int8_t>(cutter.cutOf(q));
+    }, 256);
+    std::vector<FaceCut> cuts;
+    for (std::size_t f = 0; f < faces; ++f) {
+        if (cut[f] < 0) continue;
+        Quad q{};
+        quadOf(f, q);
+        const auto v = [&](int i) { return static_cast<std::int32_t>(q[static_cast<std::size_t>((cut[f] + i) % 4)]); };
+        cuts.push_back({static_cast<std::int32_t>(f), {{v(0), v(1), v(2)}, {v(0), v(2), v(3)}}});
+    }
+    replaceFaces(front, cuts);
+    return cuts.size();
+}
+
+} // namespace i2b
