@@ -9,7 +9,7 @@ namespace i2b {
 namespace {
 
 constexpr double across = 0.03;      // of h: a quad whose middle is farther off cuts across something
-constexpr double gain = 0.8;         // share of that, at most, that the pieces may be off on average
+constexpr double gain = 0.5;         // share of that, at most, that the pieces may be off on average: on a sphere it is 0.9
 constexpr double worstCorner = 0.1;  // scaled Jacobian that the prisms of the pieces must have
 const double tilted = std::cos(25 * 3.14159265358979323846 / 180);
 
