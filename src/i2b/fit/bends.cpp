@@ -27,7 +27,7 @@ class BendCutter {
         double cosine = 1; // of its normal with the geometry's
     };
     Piece pieceOf(std::span<const Vec3> x, double h) const;
-    bool isSound(std::size_t a, std::size_t b, std::size_t c) const;
+    bool isSound(std::size_t a, std::size_t b, std::size_t c) const; // in the sense of the face
 
     const Front& front_;
     const SurfaceIndex& index_;
@@ -43,17 +43,9 @@ BendCutter::Piece BendCutter::pieceOf(std::span<const Vec3> x, double h) const {
     return {c.distance, std::abs(dot(normalized(normal), index_.normal(c.triangle)))};
 }
 
-// Corners of the prism on a triangle.
+// The prism on a triangle.
 bool BendCutter::isSound(std::size_t a, std::size_t b, std::size_t c) const {
-    const std::array<std::size_t, 3> v{a, b, c};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t at = v[i], next = v[(i + 1) % 3], before = v[(i + 2) % 3];
-        const Vec3 up = normalized(front_.front[at] - front_.wall(at));
-        const auto corner = [&](const Vec3& p, const Vec3& q, const Vec3& r) { return dot(cross(normalized(r - p), normalized(q - p)), up); };
-        if (corner(front_.wall(at), front_.wall(next), front_.wall(before)) < worstCorner) return false;
-        if (corner(front_.front[at], front_.front[next], front_.front[before]) < worstCorner) return false;
-    }
-    return true;
+    return std::min({front_.cornerAt(a, c, b), front_.cornerAt(b, a, c), front_.cornerAt(c, b, a)}) >= worstCorner;
 }
 
 int BendCutter::cutOf(const Quad& q) const {

@@ -146,6 +146,12 @@ void assignParts(Front& front, const SurfaceIndex& index) {
     });
 }
 
+double Front::cornerAt(std::size_t vertex, std::size_t before, std::size_t next) const {
+    const Vec3 up = normalized(front[vertex] - wall(vertex));
+    const auto scaled = [&](const Vec3& p, const Vec3& q, const Vec3& r) { return dot(cross(normalized(q - p), normalized(r - p)), up); };
+    return std::min(scaled(wall(vertex), wall(before), wall(next)), scaled(front[vertex], front[before], front[next]));
+}
+
 bool Front::staysWhole(std::size_t face) const { return std::binary_search(whole.begin(), whole.end(), ownerCell[face]); }
 
 bool Front::areOnOneEdge(std::span<const std::int32_t> vertices) const {

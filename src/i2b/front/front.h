@@ -63,6 +63,9 @@ struct Front {
     // Are these vertices all on one edge of a coarse cell? The face on its other side has them all: a face on them alone would
     // be a part of that one. With an inserted vertex both its ends count.
     bool areOnOneEdge(std::span<const std::int32_t> vertices) const;
+    // Of a prism at a vertex, between the vertices before and after it on its face: the cosine between the edge off the wall and the
+    // normal of the corner, times the corner's sine; the worse one of wall and front.
+    double cornerAt(std::size_t vertex, std::size_t before, std::size_t next) const;
     std::size_t firstInserted() const { return front.size() - inserted.size(); } // vertex
     // "" or the first fault: open edges away from the domain's sides, isolated vertices, sizes of arrays.
     std::string validate() const;

@@ -83,14 +83,8 @@ class Cutter {
         }
         return true;
     }
-    // The cosine between the edge off the wall at a vertex and the corner of two neighbours there, times the corner's sine;
-    // the worse one of wall and front.
     double cornerAt(std::int32_t vertex, std::int32_t before, std::int32_t next) const {
-        const auto v = static_cast<Index>(vertex), a = static_cast<Index>(before), b = static_cast<Index>(next);
-        const Vec3 up = normalized(front_.front[v] - front_.wall(v));
-        const auto scaled = [&](const Vec3& p, const Vec3& q, const Vec3& r) { return dot(cross(normalized(q - p), normalized(r - p)), up); };
-        return std::min(scaled(front_.wall(v), front_.wall(a), front_.wall(b)),
-                        scaled(front_.front[v], front_.front[a], front_.front[b]));
+        return front_.cornerAt(static_cast<Index>(vertex), static_cast<Index>(before), static_cast<Index>(next));
     }
     // The piece from one vertex over the last and the first one to another.
     bool isOnOneEdgeRound(const Polygon& p, Index from, Index to) const {
