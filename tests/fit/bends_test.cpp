@@ -83,6 +83,19 @@ TEST(Bends, WholeFacesStay) {
     EXPECT_EQ(cutAcrossBends(b.front, *b.painted.index), 0u);
 }
 
+// What makeWalls() falls back on: the whole fit cuts nothing then, where it otherwise does.
+TEST(Bends, FitLeavesWholeFacesWhole) {
+    ToFront free(turnedBox(), stagesOptions()), held(turnedBox(), stagesOptions());
+    const std::size_t faces = held.front.ownerCell.size();
+    held.front.whole = held.front.ownerCell;
+    const FitSummary cut = fitFront(free.front, free.lattice, *free.painted.index, free.graph, FitOptions{}, {});
+    const FitSummary whole = fitFront(held.front, held.lattice, *held.painted.index, held.graph, FitOptions{}, {});
+    EXPECT_GT(cut.split + cut.inserted, 0u);
+    EXPECT_EQ(whole.split + whole.inserted, 0u);
+    EXPECT_EQ(held.front.ownerCell.size(), faces);
+    EXPECT_EQ(held.front.validate(), "");
+}
+
 TEST(Bends, SameOnAnyNumberOfThreads) {
     std::uint64_t sum = 0;
     for (const std::size_t threads : {1u, 3u}) {
