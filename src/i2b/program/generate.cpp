@@ -11,6 +11,7 @@
 #include "i2b/paint/touched_parts.h"
 #include "i2b/program/run_stage.h"
 #include "i2b/program/walls.h"
+#include "i2b/quality/last_resort.h"
 #include "i2b/sizing/automatic.h"
 #include "i2b/sizing/estimate.h"
 #include <fmt/format.h>
@@ -127,12 +128,19 @@ MeshResult generate(const Options& options, Context& context) {
     const WallPlans plans = plansOf(options.layers, c.surface.parts);
     notes.insert(notes.end(), plans.notes.begin(), plans.notes.end());
     Walls walls = makeWalls({c, *lattice, features, plans, options.fit}, out.mesh, context);
+    const std::int32_t thinFrom = walls.laid.stack.asHighAsCan() ? out.mesh.cells : static_cast<std::int32_t>(lattice->cellCount());
+    const LastResort changed = stage(
+        context, "last resort", [&] { return changePoorPlaces(out.mesh, walls.repaired.unmended, options.quality, thinFrom); },
+        [](const LastResort& l) { return l.merged + l.divided; });
     out.report = reportOf(c, options, context);
     out.report.fitCutShort = walls.fitted.cutShort;
     out.walls = measureLayers(walls.front, walls.laid.stack);
     out.report.layers = summarize(out.walls, walls.front, c.surface.parts, options.layers.count);
     out.walls.askedFirst = {}, out.walls.askedThickness = {}; // the report has them
-    for (std::int32_t& cell : out.walls.wallCell) cell += static_cast<std::int32_t>(lattice->cellCount());
+    for (std::int32_t& cell : out.walls.wallCell) {
+        cell += static_cast<std::int32_t>(lattice->cellCount());
+        if (!changed.cellOf.empty()) cell = changed.cellOf[static_cast<std::size_t>(cell)];
+    }
     out.report.wallFaces = static_cast<std::int64_t>(walls.front.ownerCell.size());
     walls.front = {}, walls.laid = {}; // from here on the mesh speaks for itself
     lattice.reset();

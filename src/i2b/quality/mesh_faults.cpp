@@ -153,4 +153,16 @@ std::vector<std::int32_t> MeshFaults::undividedFaces() const {
     return faces;
 }
 
+std::vector<std::int32_t> MeshFaults::poorFaces() const {
+    std::vector<std::int32_t> faces;
+    for (Index f = 0; f < faceFlags_.size(); ++f) {
+        const bool isInner = f < mesh_.neighbour.size();
+        const std::uint8_t cells = cellFlags_[Index(mesh_.owner[f])] | (isInner ? cellFlags_[Index(mesh_.neighbour[f])] : 0);
+        // Of faces among thin cells over warped walls far too many do not divide.
+        const int counting = mesh_.owner[f] < thinFrom_ ? 0xff : nonOrthogonal | skew;
+        if ((faceFlags_[f] & counting) != 0 || cells != 0) faces.push_back(static_cast<std::int32_t>(f));
+    }
+    return faces;
+}
+
 } // namespace i2b

@@ -35,6 +35,9 @@ class MeshFaults {
     std::vector<std::int32_t> poorCells(FaultCount& faults, bool severeOnly = false) const;
     // Faces that do not divide into tetrahedra (face_tets.h); these count nowhere else.
     std::vector<std::int32_t> undividedFaces() const;
+    // All faces with any fault, those of cells with one among them; of faces among thin cells those over the limits of
+    // non-orthogonality and skewness only.
+    std::vector<std::int32_t> poorFaces() const;
 
   private:
     enum CellFlag : std::uint8_t { bad = 1, lowDeterminant = 2 };

@@ -59,6 +59,7 @@ class Optimiser {
     bool bendNode(const Task& task, Worker& worker);
     bool mendNode(const Task& task, Worker& worker);
     bool mendNodeTets(const Task& task, Worker& worker);
+    double sizeAt(std::int32_t vertex) const;
     float* bendOf(const MeshNode& wall);
     bool fitsAt(const Task& task, Worker& worker, const Vec3& to, const Badness& before);
     bool comeTo(const Task& task, Worker& worker, const Vec3& to, const Badness& before, double shortest);

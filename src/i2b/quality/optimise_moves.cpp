@@ -7,22 +7,10 @@ namespace i2b {
 namespace {
 
 using Index = std::size_t;
-constexpr double probe = 1e-3;        // of h: step of the differences that give the direction of descent
 constexpr double settled = 0.01;      // of h: nodes nearer to the geometry are on it
 constexpr double crossing = 0.05;     // of h: so near to its end a way may meet geometry
-const double folded = std::cos(25 * 3.14159265358979323846 / 180); // wall faces that a sharp edge parts
-constexpr double enough = 0.5;         // of the sum: what is less need not be bettered
-constexpr double leastGain = 1e-3;    // of the sum: what a move must bring
 constexpr double leastEdge = 0.015;   // of h: no nearer may a node come to another for the wall's sake
-constexpr double nearLimit = 0.98;    // of a limit: a node on its way to the wall may bring its cells up to there
 constexpr std::array<float, 5> bends{1, 0.75f, 0.5f, 0.25f, 0}; // tried
-constexpr std::array<double, 3> towardsMiddle{0.6, 0.3, 0.1}; // of the way
-constexpr std::array<double, 5> stepLengths{0.25, 0.12, 0.06, 0.03, 0.015}; // of h
-
-// A move for the wall's sake keeps to the limits, or makes nothing worse where they are broken already.
-bool mayStand(const Badness& now, const Badness& before) {
-    return !now.invalid && (now.worst <= nearLimit || (now.worst <= before.worst && now.sum <= before.sum));
-}
 
 } // namespace
 
@@ -90,59 +78,6 @@ bool Optimiser::mendNode(const Task& task, Worker& worker) {
 // To a feature?
 bool Optimiser::isHeld(const MeshNode& wall) const {
     return Index(wall.id) < guide_.snaps.size() && guide_.snaps[Index(wall.id)].kind != SnapKind::none;
-}
-
-// Does the wall stay folded along the lines that its nodes are held to, with a node of it elsewhere?
-bool Optimiser::keepsFolds(const MeshNode& node, const Vec3& to) const {
-    if (node.kind != MeshNode::wall) return true;
-    const FrontMesh& wall = front_.mesh;
-    const auto onLine = [&](int v) { return Index(v) >= guide_.snaps.size() || guide_.snaps[Index(v)].kind != SnapKind::none; }; // inserted ones are
-    const auto normalOf = [&](FrontMesh::FaceHandle f, bool moved) {
-        const auto place = [&](int v) { return moved && v == node.id ? to : front_.wall(Index(v)); };
-        Vec3 first, last, twice;
-        int n = 0;
-        for (auto v : wall.fv_range(f)) {
-            const Vec3 p = place(v.idx());
-            if (n++ == 0) first = p;
-            else twice += cross(last - first, p - first);
-            last = p;
-        }
-        return normalized(twice);
-    };
-    for (auto f : wall.vf_range(FrontMesh::VertexHandle(node.id))) {
-        for (auto he : wall.fh_range(f)) {
-            const auto other = wall.opposite_face_handle(he);
-            if (!other.is_valid() || !onLine(wall.from_vertex_handle(he).idx()) || !onLine(wall.to_vertex_handle(he).idx())) continue;
-            if (dot(normalOf(f, false), normalOf(other, false)) <= folded && dot(normalOf(f, true), normalOf(other, true)) > folded) return false;
-        }
-    }
-    return true;
-}
-
-bool Optimiser::mendNodeTets(const Task& task, Worker& worker) {
-    const std::uint8_t outside = nodes_.outside(task.node);
-    if (task.node.kind == MeshNode::wall && outside != 0) return false;
-    worker.begin(task);
-    const Vec3 from = worker.from;
-    const TetLack before = worker.tetsAt(from);
-    if (!before.undivided) return false;
-    const Badness limits = worker.at(from);
-    const Vec3 toMiddle = withinSides(worker.middle() - from, outside);
-    Vec3 best = from;
-    double least = before.sum * (1 - leastGain);
-    const auto tryStep = [&](const Vec3& step) {
-        const Vec3 to = onWall(task.node, from, from + step);
-        const double tets = worker.tetsAt(to).sum;
-        if (tets < least && mayStand(worker.at(to), limits) && isFree(task.node, to) && keepsFolds(task.node, to)) least = tets, best = to;
-    };
-    for (const double share : towardsMiddle) tryStep(toMiddle * share);
-    if (least > enough * before.sum) {
-        const double h = nodes_.h(task.node);
-        const Vec3 down = worker.descent(before.sum, probe * h, outside, [&](const Vec3& to) { return worker.tetsAt(to).sum; });
-        for (const double length : stepLengths) tryStep(down * (length * h));
-    }
-    worker.end(best);
-    return !(best == from);
 }
 
 // Of the column of layers over a wall node; none where that is straight whatever it says.

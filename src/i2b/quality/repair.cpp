@@ -98,6 +98,7 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, L
     }
     optimiser.mendTets(tetSweeps);
     summary.poorRemaining = poor.all;
+    summary.unmended = faults.poorFaces();
     noteMoved();
     return summary;
 }

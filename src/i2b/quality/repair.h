@@ -22,6 +22,7 @@ struct RepairSummary {
     std::int64_t poorFaces = 0;  // faces over the limits of non-orthogonality, skewness, weight or volume ratio at the
                                  // beginning, and cells of small determinant
     std::int64_t poorRemaining = 0;
+    std::vector<std::int32_t> unmended;    // faces with any fault at the end, and those of cells with one
     std::vector<std::uint8_t> movedWalls; // per vertex of the front: its wall position was changed
 };
 

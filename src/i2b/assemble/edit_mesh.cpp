@@ -1,0 +1,166 @@
+#include "i2b/assemble/edit_mesh.h"
+#include "i2b/core/parallel.h"
+#include <algorithm>
+
+namespace i2b {
+namespace {
+
+using Index = std::size_t;
+
+// Numbers of the cells that are left.
+std::vector<std::int32_t> numberCells(const std::vector<std::int32_t>& groups, std::int32_t& count) {
+    std::vector<std::int32_t> number(groups.size());
+    count = 0;
+    for (Index c = 0; c < groups.size(); ++c) number[c] = Index(groups[c]) == c ? count++ : number[Index(groups[c])];
+    return number;
+}
+
+// The faces that are left, in their new order: most keep their places, since numbers keep the order of cells.
+class FaceOrder {
+  public:
+    FaceOrder(const PolyMesh& mesh, const std::vector<std::int32_t>& groups) : mesh_(mesh), groups_(groups) {
+        const Index internal = mesh.neighbour.size();
+        std::vector<std::uint32_t> plain, changed;
+        plain.reserve(Index(mesh.faces()));
+        for (Index f = 0; f < internal; ++f) {
+            const Sides s = sides(f);
+            if (s.low == s.high) continue;
+            (s.low == mesh.owner[f] && s.high == mesh.neighbour[f] ? plain : changed).push_back(static_cast<std::uint32_t>(f));
+        }
+        const auto before = [this](std::uint32_t a, std::uint32_t b) {
+            const Sides s = sides(a), t = sides(b);
+            return s.low != t.low ? s.low < t.low : s.high < t.high;
+        };
+        std::stable_sort(changed.begin(), changed.end(), before);
+        order_.resize(plain.size() + changed.size());
+        std::merge(plain.begin(), plain.end(), changed.begin(), changed.end(), order_.begin(), before);
+        internal_ = order_.size();
+        for (Index f = internal; f < Index(mesh.faces()); ++f) order_.push_back(static_cast<std::uint32_t>(f));
+    }
+    Index size() const { return order_.size(); }
+    Index internal() const { return internal_; }
+    Index face(Index i) const { return order_[i]; }
+    bool isTurned(Index i) const { return i < internal_ && groups_[Index(mesh_.owner[order_[i]])] > groups_[Index(mesh_.neighbour[order_[i]])]; }
+
+  private:
+    struct Sides { std::int32_t low, high; };
+    Sides sides(Index f) const {
+        const std::int32_t a = groups_[Index(mesh_.owner[f])], b = groups_[Index(mesh_.neighbour[f])];
+        return {std::min(a, b), std::max(a, b)};
+    }
+
+    const PolyMesh& mesh_;
+    const std::vector<std::int32_t>& groups_;
+    std::vector<std::uint32_t> order_;
+    Index internal_ = 0;
+};
+
+// What becomes of each face.
+class Fans {
+  public:
+    Fans(const PolyMesh& mesh, const MeshEdits& edits) : mesh_(mesh), fans_(edits.fans) {}
+    const std::uint32_t* of(Index face) const {
+        const auto at = std::lower_bound(fans_.begin(), fans_.end(), face, [](const auto& fan, Index f) { return Index(fan.first) < f; });
+        return at != fans_.end() && Index(at->first) == face ? &at->second : nullptr;
+    }
+    std::uint32_t pieces(Index face) const { return of(face) ? size(face) - 2 : 1; }
+    std::uint32_t vertices(Index face) const { return of(face) ? 3 * (size(face) - 2) : size(face); } // of all pieces
+
+  private:
+    std::uint32_t size(Index face) const { return mesh_.faceOffsets[face + 1] - mesh_.faceOffsets[face]; }
+    const PolyMesh& mesh_;
+    const std::vector<std::pair<std::int32_t, std::uint32_t>>& fans_;
+};
+
+// Where what comes of each face in the new order begins; one more at the end.
+std::vector<std::uint32_t> scan(const FaceOrder& order, const auto& count) {
+    std::vector<std::uint32_t> begin(order.size() + 1, 0);
+    for (Index i = 0; i < order.size(); ++i) begin[i + 1] = begin[i] + count(order.face(i));
+    return begin;
+}
+
+void rewriteVertices(PolyMesh& mesh, const FaceOrder& order, const Fans& fans, const std::vector<std::uint32_t>& firstPiece) {
+    const std::vector<std::uint32_t> first = scan(order, [&](Index f) { return fans.vertices(f); });
+    std::vector<std::int32_t> vertices(first.back());
+    std::vector<std::uint32_t> offsets(firstPiece.back() + 1);
+    offsets.back() = first.back();
+    parallelFor(order.size(), [&](Index i) {
+        const auto v = mesh.face(static_cast<std::int32_t>(order.face(i)));
+        const std::uint32_t* const fan = fans.of(order.face(i));
+        std::uint32_t at = first[i];
+        if (!fan) {
+            offsets[firstPiece[i]] = at;
+            std::copy(v.begin(), v.end(), vertices.begin() + at);
+            if (order.isTurned(i)) std::reverse(vertices.begin() + at + 1, vertices.begin() + static_cast<std::ptrdiff_t>(at + v.size()));
+            return;
+        }
+        for (Index k = 1; k + 1 < v.size(); ++k, at += 3) {
+            offsets[firstPiece[i] + k - 1] = at;
+            vertices[at] = v[*fan], vertices[at + 1] = v[(*fan + k) % v.size()], vertices[at + 2] = v[(*fan + k + 1) % v.size()];
+            if (order.isTurned(i)) std::swap(vertices[at + 1], vertices[at + 2]);
+        }
+    });
+    mesh.faceVertices = std::move(vertices);
+    mesh.faceOffsets = std::move(offsets);
+}
+
+void rewriteSides(PolyMesh& mesh, const FaceOrder& order, const std::vector<std::int32_t>& number, const std::vector<std::uint32_t>& firstPiece) {
+    std::vector<std::int32_t> owner(firstPiece.back()), neighbour(firstPiece[order.internal()]);
+    parallelFor(order.size(), [&](Index i) {
+        const std::int32_t own = number[Index(mesh.owner[order.face(i)])];
+        const std::int32_t nei = i < order.internal() ? number[Index(mesh.neighbour[order.face(i)])] : own;
+        for (Index k = firstPiece[i]; k < firstPiece[i + 1]; ++k) {
+            owner[k] = std::min(own, nei);
+            if (i < order.internal()) neighbour[k] = std::max(own, nei);
+        }
+    });
+    Index i = order.internal();
+    for (Patch& patch : mesh.patches) {
+        const Index end = i + Index(patch.count);
+        patch.start = static_cast<std::int32_t>(firstPiece[i]);
+        patch.count = static_cast<std::int32_t>(firstPiece[end] - firstPiece[i]);
+        i = end;
+    }
+    mesh.owner = std::move(owner), mesh.neighbour = std::move(neighbour);
+}
+
+void rewriteFaces(PolyMesh& mesh, const MeshEdits& edits, const std::vector<std::int32_t>& number) {
+    const FaceOrder order(mesh, edits.groups);
+    const Fans fans(mesh, edits);
+    const std::vector<std::uint32_t> firstPiece = scan(order, [&](Index f) { return fans.pieces(f); });
+    rewriteVertices(mesh, order, fans, firstPiece);
+    rewriteSides(mesh, order, number, firstPiece);
+}
+
+template <class T, class Join>
+void uniteValues(std::vector<T>& values, const std::vector<std::int32_t>& groups, const std::vector<std::int32_t>& number, std::int32_t count,
+                 const Join& join) {
+    if (values.empty()) return;
+    for (Index c = 0; c < groups.size(); ++c) { // numbers do not grow: in place
+        T& to = values[Index(number[c])];
+        to = Index(groups[c]) == c ? values[c] : join(to, values[c]);
+    }
+    values.resize(Index(count));
+}
+
+} // namespace
+
+std::vector<std::int32_t> editMesh(PolyMesh& mesh, const MeshEdits& edits) {
+    const std::vector<std::int32_t>& groups = edits.groups;
+    std::int32_t count = 0;
+    std::vector<std::int32_t> number = numberCells(groups, count);
+    rewriteFaces(mesh, edits, number);
+    const auto first = [](auto a, auto) { return a; };
+    uniteValues(mesh.cellLevel, groups, number, count, first);
+    uniteValues(mesh.cellRegion, groups, number, count, first);
+    uniteValues(mesh.cellLayer, groups, number, count, [](std::uint8_t a, std::uint8_t b) { return a == 0 || b == 0 ? std::max(a, b) : std::min(a, b); });
+    for (CellZone& zone : mesh.zones) {
+        for (std::int32_t& c : zone.cells) c = number[Index(c)];
+        std::sort(zone.cells.begin(), zone.cells.end());
+        zone.cells.erase(std::unique(zone.cells.begin(), zone.cells.end()), zone.cells.end());
+    }
+    mesh.cells = count;
+    return number;
+}
+
+} // namespace i2b

@@ -1,0 +1,193 @@
+#include "i2b/quality/last_resort.h"
+#include "i2b/quality/local_edits.h"
+#include "i2b/quality/dictionary_measure.h"
+#include "i2b/quality/measure_steps.h"
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace i2b {
+namespace {
+
+using Index = std::size_t;
+constexpr int mostRounds = 4;
+constexpr std::size_t mostCells = 4;    // of a group
+constexpr int mostConcave = 1;          // cells that a merge may make concave
+
+struct Verdict {
+    std::array<std::int64_t, dictionaryLimitCount + 9> counts{}; // of everything that a check names
+    std::int64_t faces = 0, concave = 0;                         // faces beyond limits, cells
+};
+
+Verdict judge(const PolyMesh& mesh, const DictionaryLimits& dictionary) {
+    const QualityLimits limits;
+    Measurement m{mesh, limits, dictionary, {}, {}, {}, {}, {}, {}, {}};
+    for (const Vec3& p : mesh.points) m.report.box.add(p);
+    m.cellFaces = buildCellFaces(mesh);
+    measureCells(m);
+    measureFaces(m);
+    const QualityReport& r = m.report;
+    Verdict v;
+    Index n = 0;
+    for (const DictionaryCheck& check : r.dictionary) v.counts[n++] = check.faces;
+    for (const std::int64_t count : {r.negativeVolumeCells, r.openCells, r.wrongOrientedFaces, r.highlySkewFaces, r.smallDeterminantCells,
+                                     r.lowWeightFaces, r.lowVolumeRatioFaces, r.highAspectRatioCells, r.tetErrors})
+        v.counts[n++] = count;
+    v.faces = r.dictionaryFaces, v.concave = r.concaveCells;
+    return v;
+}
+
+bool isBetter(const Verdict& now, const Verdict& before) {
+    for (Index i = 0; i < now.counts.size(); ++i)
+        if (now.counts[i] > before.counts[i]) return false;
+    return now.faces < before.faces && now.concave <= before.concave + mostConcave;
+}
+
+using Trial = LocalEdits::Trial;
+
+class Changer {
+  public:
+    Changer(const PolyMesh& mesh, const LocalEdits& edits, const DictionaryLimits& limits, std::int32_t thinFrom)
+        : mesh_(mesh), edits_(edits), limits_(limits), thinFrom_(thinFrom) {}
+
+    // What helps a face with the least change: dividing it, uniting its own two cells, else one of them with the neighbour
+    // across its largest face.
+    std::optional<Trial> find(std::int32_t face) const {
+        const std::int32_t own = edits_.of(mesh_.owner[Index(face)]), other = edits_.across(face, own);
+        if (own == other) return {};
+        if (const auto divided = divide(face, own, other)) return divided;
+        if (other >= 0)
+            if (const auto united = unite(own, other)) return united;
+        for (const std::int32_t group : {own, other}) {
+            if (group < 0) continue;
+            for (const std::int32_t next : byFace(group)) {
+                if (next == own || next == other) continue;
+                if (const auto united = unite(group, next)) return united;
+            }
+        }
+        return {};
+    }
+
+  private:
+    std::vector<std::int32_t> byFace(std::int32_t group) const { // neighbours, the one across the largest face first
+        std::vector<std::int32_t> faces;
+        edits_.facesOf(group, faces);
+        std::vector<std::pair<double, std::int32_t>> sizes;
+        for (const std::int32_t f : faces)
+            if (const std::int32_t next = edits_.across(f, group); next >= 0) sizes.emplace_back(-norm2(measureFace(mesh_, f).area), next);
+        std::sort(sizes.begin(), sizes.end());
+        std::vector<std::int32_t> neighbours;
+        for (const auto& [size, next] : sizes) neighbours.push_back(next);
+        return neighbours;
+    }
+    bool mayUnite(std::int32_t a, std::int32_t b) const {
+        if (std::max(a, b) >= thinFrom_ && std::min(a, b) >= thinFrom_) return false;
+        if (!mesh_.cellRegion.empty() && mesh_.cellRegion[Index(a)] != mesh_.cellRegion[Index(b)]) return false;
+        return edits_.cells(a).size() + edits_.cells(b).size() <= mostCells && edits_.meetInOneFace(a, b);
+    }
+    std::optional<Trial> unite(std::int32_t a, std::int32_t b) const {
+        const Trial trial{std::min(a, b), std::max(a, b), true};
+        if (!mayUnite(trial.a, trial.b)) return {};
+        const Verdict before = judge(edits_.around({trial.a, trial.b}), limits_);
+        if (before.faces > 0 && isBetter(judge(edits_.around(trial), limits_), before)) return trial;
+        return {};
+    }
+    std::optional<Trial> divide(std::int32_t face, std::int32_t own, std::int32_t other) const {
+        const auto corners = static_cast<std::uint32_t>(mesh_.face(face).size());
+        if (corners < 4 || edits_.isDivided(face)) return {};
+        if (other < 0) other = own;
+        Trial trial{std::min(own, other), std::max(own, other), false};
+        Verdict least = judge(edits_.around(trial), limits_);
+        std::optional<Trial> best;
+        trial.face = face;
+        for (; trial.from < (corners == 4 ? 2 : corners); ++trial.from) { // a quadrangle has two diagonals
+            const Verdict v = judge(edits_.around(trial), limits_);
+            if (isBetter(v, least)) least = v, best = trial;
+        }
+        return best;
+    }
+
+    const PolyMesh& mesh_;
+    const LocalEdits& edits_;
+    const DictionaryLimits& limits_;
+    std::int32_t thinFrom_;
+};
+
+// Makes those of the changes that do not touch what an earlier one has changed; returns the groups around them, ascending.
+std::vector<std::int32_t> make(const std::vector<std::optional<Trial>>& changes, LocalEdits& edits) {
+    std::vector<std::int32_t> touched;
+    for (const std::optional<Trial>& change : changes) {
+        if (!change) continue;
+        const std::vector<std::int32_t> around = edits.neighboursOf(change->a, change->b);
+        if (std::ranges::any_of(around, [&](std::int32_t g) { return std::ranges::binary_search(touched, g); })) continue;
+        if (change->united) edits.unite(change->a, change->b);
+        else edits.divide(change->face, change->from);
+        const auto middle = static_cast<std::ptrdiff_t>(touched.size());
+        touched.insert(touched.end(), around.begin(), around.end());
+        std::inplace_merge(touched.begin(), touched.begin() + middle, touched.end());
+    }
+    return touched;
+}
+
+// Faces with a corner that turns back by about the angle (degrees) or more, as checkMesh asks: by its sine.
+std::vector<std::int32_t> concaveFaces(const PolyMesh& mesh, double degrees) {
+    const double sine = std::sin(degrees * std::numbers::pi / 180), least2 = 0.99 * sine * sine;
+    const auto isConcave = [&](std::int32_t f) {
+        const auto v = mesh.face(f);
+        if (v.size() == 3) return false;
+        const auto edge = [&](Index i) { return mesh.points[Index(v[(i + 1) % v.size()])] - mesh.points[Index(v[i % v.size()])]; };
+        Vec3 twice, before = edge(v.size() - 1);
+        for (Index i = 1; i + 1 < v.size(); ++i) twice += cross(mesh.points[Index(v[i])] - mesh.points[Index(v[0])], edge(i));
+        for (Index i = 0; i < v.size(); ++i) {
+            const Vec3 next = edge(i), turn = cross(before, next);
+            if (!(dot(turn, twice) > 0) && norm2(turn) > least2 * norm2(before) * norm2(next)) return true;
+            before = next;
+        }
+        return false;
+    };
+    using Faces = std::vector<std::int32_t>;
+    return orderedReduce(
+        Index(mesh.faces()), Faces{},
+        [&](Index begin, Index end) {
+            Faces found;
+            for (Index f = begin; f < end; ++f)
+                if (isConcave(static_cast<std::int32_t>(f))) found.push_back(static_cast<std::int32_t>(f));
+            return found;
+        },
+        [](Faces a, const Faces& b) {
+            a.insert(a.end(), b.begin(), b.end());
+            return a;
+        });
+}
+
+} // namespace
+
+LastResort changePoorPlaces(PolyMesh& mesh, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits, std::int32_t thinFrom) {
+    LastResort summary;
+    std::vector<std::int32_t> faces;
+    std::ranges::set_union(poorFaces, concaveFaces(mesh, limits.concavity), std::back_inserter(faces));
+    if (faces.empty()) return summary;
+    const Rows cellFaces = buildCellFaces(mesh);
+    LocalEdits edits(mesh, cellFaces);
+    for (int round = 0; round < mostRounds && !faces.empty(); ++round) {
+        const Changer changer(mesh, edits, limits, thinFrom);
+        std::vector<std::optional<Trial>> changes(faces.size());
+        parallelFor(faces.size(), [&](Index i) { changes[i] = changer.find(faces[i]); }, 1);
+        const std::vector<std::int32_t> touched = make(changes, edits);
+        if (touched.empty()) break;
+        const auto isTouched = [&](std::int32_t group) { return std::ranges::binary_search(touched, group); };
+        Index left = 0;
+        for (Index i = 0; i < faces.size(); ++i) { // that may yet be helped: by a change that had to wait, or where all is new
+            const std::int32_t own = edits.of(mesh.owner[Index(faces[i])]), other = edits.across(faces[i], own);
+            if (own != other && (changes[i] || isTouched(own) || isTouched(other))) faces[left++] = faces[i];
+        }
+        faces.resize(left);
+    }
+    summary.merged = edits.united(), summary.divided = edits.divided();
+    if (summary.merged + summary.divided > 0) summary.cellOf = editMesh(mesh, edits.edits());
+    return summary;
+}
+
+} // namespace i2b

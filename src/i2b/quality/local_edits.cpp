@@ -1,0 +1,153 @@
+#include "i2b/quality/local_edits.h"
+#include <algorithm>
+#include <numeric>
+
+namespace i2b {
+namespace {
+
+using Index = std::size_t;
+
+void sortUnique(std::vector<std::int32_t>& v) {
+    std::sort(v.begin(), v.end());
+    v.erase(std::unique(v.begin(), v.end()), v.end());
+}
+
+std::int32_t placeIn(const std::vector<std::int32_t>& sorted, std::int32_t value) {
+    const auto at = std::lower_bound(sorted.begin(), sorted.end(), value);
+    return at != sorted.end() && *at == value ? static_cast<std::int32_t>(at - sorted.begin()) : -1;
+}
+
+// A mesh that faces are put into one by one.
+class MeshBuilder {
+  public:
+    MeshBuilder(const PolyMesh& from, const std::vector<std::int32_t>& points, std::int32_t cells) : from_(from), points_(points) {
+        mesh_.cells = cells;
+        for (const std::int32_t p : points) mesh_.points.push_back(from.points[Index(p)]);
+        mesh_.faceOffsets.push_back(0);
+    }
+    // Out of owner into neighbour, one of which may be -1. from: where it becomes a fan.
+    void add(std::int32_t face, std::int32_t owner, std::int32_t neighbour, const std::uint32_t* from) {
+        const auto v = from_.face(face);
+        const bool turned = neighbour < 0 ? false : owner < 0 || owner > neighbour;
+        if (!from) return addLoop({v.begin(), v.end()}, owner, neighbour, turned);
+        for (Index k = 1; k + 1 < v.size(); ++k)
+            addLoop({v[*from], v[(*from + k) % v.size()], v[(*from + k + 1) % v.size()]}, owner, neighbour, turned);
+    }
+    PolyMesh take() {
+        mesh_.patches = {{"rest", "patch", mesh_.internalFaces(), mesh_.faces() - mesh_.internalFaces()}};
+        return std::move(mesh_);
+    }
+
+  private:
+    void addLoop(std::vector<std::int32_t> loop, std::int32_t owner, std::int32_t neighbour, bool turned) {
+        if (turned) std::reverse(loop.begin(), loop.end());
+        for (const std::int32_t p : loop) mesh_.faceVertices.push_back(placeIn(points_, p));
+        mesh_.faceOffsets.push_back(static_cast<std::uint32_t>(mesh_.faceVertices.size()));
+        const bool inner = owner >= 0 && neighbour >= 0;
+        mesh_.owner.push_back(inner ? std::min(owner, neighbour) : std::max(owner, neighbour));
+        if (inner) mesh_.neighbour.push_back(std::max(owner, neighbour));
+    }
+
+    const PolyMesh& from_;
+    const std::vector<std::int32_t>& points_;
+    PolyMesh mesh_;
+};
+
+} // namespace
+
+LocalEdits::LocalEdits(const PolyMesh& mesh, const Rows& cellFaces) : mesh_(mesh), cellFaces_(cellFaces), group_(Index(mesh.cells)) {
+    std::iota(group_.begin(), group_.end(), 0);
+}
+
+std::span<const std::int32_t> LocalEdits::cells(std::int32_t group) const {
+    const auto at = members_.find(group);
+    if (at == members_.end()) return {&group_[Index(group)], 1};
+    return at->second;
+}
+
+void LocalEdits::unite(std::int32_t a, std::int32_t b) {
+    if (b < a) std::swap(a, b);
+    const auto from = cells(b), to = cells(a);
+    std::vector<std::int32_t> all(to.begin(), to.end());
+    all.insert(all.end(), from.begin(), from.end());
+    for (const std::int32_t c : all) group_[Index(c)] = a;
+    members_.erase(b);
+    members_[a] = std::move(all);
+    ++united_;
+}
+
+std::int32_t LocalEdits::across(std::int32_t face, std::int32_t group) const {
+    if (face >= mesh_.internalFaces()) return -1;
+    const std::int32_t own = of(mesh_.owner[Index(face)]);
+    return own == group ? of(mesh_.neighbour[Index(face)]) : own;
+}
+
+void LocalEdits::facesOf(std::int32_t group, std::vector<std::int32_t>& faces) const {
+    for (const std::int32_t c : cells(group)) {
+        for (const std::int32_t f : cellFaces_[c])
+            if (across(f, group) != group) faces.push_back(f);
+    }
+}
+
+void LocalEdits::pointsOf(std::int32_t group, std::vector<std::int32_t>& points) const {
+    std::vector<std::int32_t> faces;
+    facesOf(group, faces);
+    for (const std::int32_t f : faces) {
+        const auto v = mesh_.face(f);
+        points.insert(points.end(), v.begin(), v.end());
+    }
+    sortUnique(points);
+}
+
+bool LocalEdits::meetInOneFace(std::int32_t a, std::int32_t b) const {
+    std::vector<std::int32_t> faces, own, other, shared;
+    facesOf(a, faces);
+    std::erase_if(faces, [&](std::int32_t f) { return across(f, a) != b; });
+    if (faces.size() != 1) return false;
+    pointsOf(a, own), pointsOf(b, other);
+    std::set_intersection(own.begin(), own.end(), other.begin(), other.end(), std::back_inserter(shared));
+    return shared.size() == mesh_.face(faces.front()).size();
+}
+
+std::vector<std::int32_t> LocalEdits::neighboursOf(std::int32_t a, std::int32_t b) const {
+    std::vector<std::int32_t> groups{a, b}, faces;
+    for (const std::int32_t group : {a, b}) {
+        faces.clear();
+        facesOf(group, faces);
+        for (const std::int32_t f : faces)
+            if (const std::int32_t other = across(f, group); other >= 0) groups.push_back(other);
+    }
+    sortUnique(groups);
+    return groups;
+}
+
+PolyMesh LocalEdits::around(const Trial& trial) const {
+    std::vector<std::int32_t> cells = neighboursOf(trial.a, trial.b), faces, points;
+    for (const std::int32_t group : cells) facesOf(group, faces);
+    sortUnique(faces);
+    if (trial.united) std::erase(cells, trial.b);
+    const auto cellOf = [&](std::int32_t cell) {
+        const std::int32_t group = of(cell);
+        return placeIn(cells, trial.united && group == trial.b ? trial.a : group);
+    };
+    struct Sides { std::int32_t face, owner, neighbour; };
+    std::vector<Sides> inner, outer;
+    for (const std::int32_t f : faces) {
+        const std::int32_t own = cellOf(mesh_.owner[Index(f)]), nei = f < mesh_.internalFaces() ? cellOf(mesh_.neighbour[Index(f)]) : -1;
+        if (own == nei) continue;
+        (own >= 0 && nei >= 0 ? inner : outer).push_back({f, own, nei});
+        const auto v = mesh_.face(f);
+        points.insert(points.end(), v.begin(), v.end());
+    }
+    sortUnique(points);
+    MeshBuilder mesh(mesh_, points, static_cast<std::int32_t>(cells.size()));
+    for (const auto& sides : {inner, outer}) {
+        for (const Sides& s : sides) {
+            const auto fan = fans_.find(s.face);
+            mesh.add(s.face, s.owner, s.neighbour, s.face == trial.face ? &trial.from : fan != fans_.end() ? &fan->second : nullptr);
+        }
+    }
+    return mesh.take();
+}
+
+} // namespace i2b

@@ -1,0 +1,57 @@
+// What is to become of the cells and faces of a mesh, before it does: groups of cells that are to be one, faces that are to
+// be divided; and a group with what lies around it as a small mesh of its own, so that the measures of whole meshes can
+// judge what another change would bring.
+#pragma once
+#include "i2b/assemble/edit_mesh.h"
+#include "i2b/assemble/mesh_topology.h"
+#include <cstdint>
+#include <span>
+#include <map>
+#include <unordered_map>
+#include <vector>
+
+namespace i2b {
+
+// A group is named by its lowest cell. Keeps references.
+class LocalEdits {
+  public:
+    LocalEdits(const PolyMesh& mesh, const Rows& cellFaces);
+
+    std::int32_t of(std::int32_t cell) const { return group_[static_cast<std::size_t>(cell)]; }
+    std::span<const std::int32_t> cells(std::int32_t group) const;
+    void unite(std::int32_t a, std::int32_t b); // groups
+    void divide(std::int32_t face, std::uint32_t from) { fans_[face] = from; } // into a fan of triangles from one of its vertices
+    bool isDivided(std::int32_t face) const { return fans_.contains(face); }
+    MeshEdits edits() const { return {group_, {fans_.begin(), fans_.end()}}; }
+    std::int64_t united() const { return united_; }
+    std::int64_t divided() const { return static_cast<std::int64_t>(fans_.size()); }
+
+    // Faces of a group to others and out of the domain.
+    void facesOf(std::int32_t group, std::vector<std::int32_t>& faces) const;
+    // The group at the other side of such a face; -1: none.
+    std::int32_t across(std::int32_t face, std::int32_t group) const;
+    // Do two groups meet in one face, with all the points that they share?
+    bool meetInOneFace(std::int32_t a, std::int32_t b) const;
+
+    std::vector<std::int32_t> neighboursOf(std::int32_t a, std::int32_t b) const; // with both, ascending
+    // Two groups with all their neighbours, and what else is tried.
+    struct Trial {
+        std::int32_t a, b;         // a <= b
+        bool united = false;       // as one cell
+        std::int32_t face = -1;    // divided
+        std::uint32_t from = 0;    // one of its vertices
+    };
+    PolyMesh around(const Trial& trial) const;
+
+  private:
+    void pointsOf(std::int32_t group, std::vector<std::int32_t>& points) const;
+
+    const PolyMesh& mesh_;
+    const Rows& cellFaces_;
+    std::vector<std::int32_t> group_;                                        // per cell
+    std::unordered_map<std::int32_t, std::vector<std::int32_t>> members_;    // of groups of more than one
+    std::map<std::int32_t, std::uint32_t> fans_;
+    std::int64_t united_ = 0;
+};
+
+} // namespace i2b

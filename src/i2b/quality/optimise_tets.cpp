@@ -1,0 +1,98 @@
+// Moves that make faces divide into tetrahedra.
+#include "i2b/fit/corner.h"
+#include "i2b/quality/optimise_worker.h"
+#include <cmath>
+
+namespace i2b {
+namespace {
+
+using Index = std::size_t;
+const double folded = std::cos(25 * 3.14159265358979323846 / 180); // wall faces that a sharp edge parts
+constexpr double enough = 0.5;      // of the sum: what is less need not be bettered
+// Of the size of the wall's faces: so far off the geometry a node still counts as on it.
+constexpr std::array<double, 3> hair{0.009, 0.006, 0.003};
+
+} // namespace
+
+// Does the wall stay folded along the lines that its nodes are held to, with a node of it elsewhere?
+bool Optimiser::keepsFolds(const MeshNode& node, const Vec3& to) const {
+    if (node.kind != MeshNode::wall) return true;
+    const FrontMesh& wall = front_.mesh;
+    const auto onLine = [&](int v) { return Index(v) >= guide_.snaps.size() || guide_.snaps[Index(v)].kind != SnapKind::none; }; // inserted ones are
+    const auto normalOf = [&](FrontMesh::FaceHandle f, bool moved) {
+        const auto place = [&](int v) { return moved && v == node.id ? to : front_.wall(Index(v)); };
+        Vec3 first, last, twice;
+        int n = 0;
+        for (auto v : wall.fv_range(f)) {
+            const Vec3 p = place(v.idx());
+            if (n++ == 0) first = p;
+            else twice += cross(last - first, p - first);
+            last = p;
+        }
+        return normalized(twice);
+    };
+    for (auto f : wall.vf_range(FrontMesh::VertexHandle(node.id))) {
+        for (auto he : wall.fh_range(f)) {
+            const auto other = wall.opposite_face_handle(he);
+            if (!other.is_valid() || !onLine(wall.from_vertex_handle(he).idx()) || !onLine(wall.to_vertex_handle(he).idx())) continue;
+            if (dot(normalOf(f, false), normalOf(other, false)) <= folded && dot(normalOf(f, true), normalOf(other, true)) > folded) return false;
+        }
+    }
+    return true;
+}
+
+// Of the faces at a wall vertex, as the fit of a mesh is judged by: the median, of each the median of its edges. m
+double Optimiser::sizeAt(std::int32_t vertex) const {
+    const FrontMesh& wall = front_.mesh;
+    std::vector<double> sizes, edges;
+    const auto median = [](std::vector<double>& v) {
+        const auto middle = v.begin() + static_cast<std::ptrdiff_t>((v.size() - 1) / 2);
+        std::nth_element(v.begin(), middle, v.end());
+        return *middle;
+    };
+    for (auto f : wall.vf_range(FrontMesh::VertexHandle(vertex))) {
+        edges.clear();
+        for (auto he : wall.fh_range(f))
+            edges.push_back(norm(front_.wall(Index(wall.to_vertex_handle(he).idx())) - front_.wall(Index(wall.from_vertex_handle(he).idx()))));
+        sizes.push_back(median(edges));
+    }
+    return median(sizes);
+}
+
+bool Optimiser::mendNodeTets(const Task& task, Worker& worker) {
+    const std::uint8_t outside = nodes_.outside(task.node);
+    if (task.node.kind == MeshNode::wall && outside != 0) return false;
+    worker.begin(task);
+    const Vec3 from = worker.from;
+    const TetLack before = worker.tetsAt(from);
+    if (!before.undivided) return false;
+    const Badness limits = worker.at(from);
+    const Vec3 toMiddle = withinSides(worker.middle() - from, outside);
+    Vec3 best = from;
+    double least = before.sum * (1 - leastGain);
+    const auto tryPlace = [&](const Vec3& to) {
+        const double tets = worker.tetsAt(to).sum;
+        if (tets < least && mayStand(worker.at(to), limits) && isFree(task.node, to) && keepsFolds(task.node, to)) least = tets, best = to;
+    };
+    const auto tryStep = [&](const Vec3& step) { tryPlace(onWall(task.node, from, from + step)); };
+    for (const double share : towardsMiddle) tryStep(toMiddle * share);
+    if (task.node.kind == MeshNode::wall && least > enough * before.sum) {
+        // Faces that wrap the rim of a sheet without thickness have no width: a hair's breadth opens them.
+        const Vec3 toFront = normalized(front_.front[Index(task.node.id)] - from);
+        const double size = sizeAt(task.node.id), most = hair.front() * size;
+        const bool isOff = !guide_.index.closest(from, most);
+        for (const double length : hair) {
+            const Vec3 to = from + toFront * (length * size);
+            if (isOff || guide_.index.closest(to, most)) tryPlace(to);
+        }
+    }
+    if (least > enough * before.sum) {
+        const double h = nodes_.h(task.node);
+        const Vec3 down = worker.descent(before.sum, probe * h, outside, [&](const Vec3& to) { return worker.tetsAt(to).sum; });
+        for (const double length : stepLengths) tryStep(down * (length * h));
+    }
+    worker.end(best);
+    return !(best == from);
+}
+
+} // namespace i2b
