@@ -128,7 +128,7 @@ TEST(CentreShare, IsHalfOfAFlatCellAndFallsWithWarpAndLean) {
         std::vector<Vec3> low{{0, 0.6, -warp}, {0.7, 1, warp}, {1, 0, -warp}, {0, 0, warp}}, high = low;
         for (Vec3& p : high) p.z += height;
         high[0].x += lean * height;
-        return centreShare(low, high);
+        return thinCell(low, high).centreShare;
     };
     EXPECT_NEAR(share(0, 1, 0), 0.5, 1e-12);
     EXPECT_NEAR(share(0, 1e-5, 0.5), 0.5, 1e-6);

@@ -10,6 +10,7 @@ namespace {
 using Index = std::size_t;
 using Polygon = std::vector<std::int32_t>; // vertices
 constexpr double leastShare = 0.2;   // centreShare() of cells that stand as they are
+constexpr double leastHeight = 0.05; // of a thin cell's: its centre's over the triangles of its faces
 constexpr Index mostVertices = 16;   // of a face
 constexpr double soundCorner = 0.15; // scaled Jacobian; cuts that leave as much are chosen by how near to the geometry they run
 constexpr double leastCorner = 0.02; // no cut leaves less
@@ -78,10 +79,33 @@ class Cutter {
             const auto last = static_cast<Index>(stack_.pointsOf(v)) - 1;
             for (Index k = 0; k < static_cast<Index>(cells); ++k) points[k * n + i] = column[last - k];
         }
-        for (Index k = 0; k + 1 < static_cast<Index>(cells); ++k) {
-            if (!(centreShare({&points[k * n], n}, {&points[(k + 1) * n], n}) > leastShare)) return false;
+        const auto level = [&](int k) { return std::span<const Vec3>(&points[static_cast<Index>(k) * n], n); };
+        std::array<ThinCell, maxLayers + 1> cell;
+        for (int k = 0; k + 1 < cells; ++k) {
+            cell[static_cast<Index>(k)] = thinCell(level(k), level(k + 1));
+            if (!(cell[static_cast<Index>(k)].centreShare > leastShare)) return false;
+        }
+        // Nodes of layers that fill the room are moved until their faces divide; those of thin layers cannot be.
+        for (int k = 0; k < cells && !stack_.asHighAsCan(); ++k) {
+            if (!divides(level(k), k > 0 ? &cell[static_cast<Index>(k - 1)] : nullptr, k + 1 < cells ? &cell[static_cast<Index>(k)] : nullptr)) return false;
         }
         return true;
+    }
+    // Has a face a vertex from which it divides into triangles that the centres of the cells below and above see from the right
+    // side?
+    static bool divides(std::span<const Vec3> x, const ThinCell* below, const ThinCell* above) {
+        const Index n = x.size();
+        const auto sees = [&](const ThinCell& cell, double side, Index base, Index i) {
+            const Vec3& from = x[base];
+            const Vec3 up = normalized(cross(x[(base + i + 1) % n] - from, x[(base + i) % n] - from)); // faces go round as seen from the wall
+            return side * dot(up, cell.centre - from) > leastHeight * cell.height;
+        };
+        for (Index base = 0; base < n; ++base) {
+            bool good = true;
+            for (Index i = 1; i + 1 < n && good; ++i) good = (!below || sees(*below, -1, base, i)) && (!above || sees(*above, 1, base, i));
+            if (good) return true;
+        }
+        return false;
     }
     double cornerAt(std::int32_t vertex, std::int32_t before, std::int32_t next) const {
         return front_.cornerAt(static_cast<Index>(vertex), static_cast<Index>(before), static_cast<Index>(next));
@@ -127,7 +151,7 @@ class Cutter {
 
 } // namespace
 
-double centreShare(std::span<const Vec3> low, std::span<const Vec3> high) {
+ThinCell thinCell(std::span<const Vec3> low, std::span<const Vec3> high) {
     const Index n = low.size();
     std::array<Polygon3, mostVertices + 2> faces; // out of the cell; of the low one, whose points go round as seen from the wall
     faces[n] = measured(low), faces[n + 1] = measured(high);
@@ -145,11 +169,11 @@ double centreShare(std::span<const Vec3> low, std::span<const Vec3> high) {
         const double v = dot(faces[i].area, faces[i].centre - estimate);
         moment += (faces[i].centre - estimate) * (0.75 * v), volume += v;
     }
-    if (!(volume > 0)) return -1;
+    if (!(volume > 0)) return {};
     const Vec3 centre = estimate + moment / volume;
     const double below = dot(normalized(faces[n].area), faces[n].centre - centre), above = dot(normalized(faces[n + 1].area), faces[n + 1].centre - centre);
     const double height = dot(normalized(faces[n + 1].area), faces[n + 1].centre - faces[n].centre);
-    return height > 0 ? std::min(below, above) / height : -1;
+    return {centre, height, height > 0 ? std::min(below, above) / height : -1};
 }
 
 namespace {
