@@ -1,0 +1,92 @@
+// Proves: where faces are beyond the limits, dividing and uniting leaves a valid mesh with fewer of them, nothing worse and the
+// same points; a mesh without any stays as it is; layers of asked heights are not united; the same on any number of threads.
+#include "i2b/quality/last_resort.h"
+#include "i2b/quality/mesh_faults.h"
+#include "i2b/quality/quality_report.h"
+#include "quality/shaken_block.h"
+#include <gtest/gtest.h>
+#include <numeric>
+#include <tbb/global_control.h>
+
+namespace i2b::test {
+namespace {
+
+using Index = std::size_t;
+
+PolyMesh shaken(unsigned seed, double shake = 0.55) {
+    std::mt19937 random(seed);
+    return shakenBlock(8, shake, random);
+}
+
+std::vector<std::int32_t> poorFaces(const PolyMesh& mesh) {
+    const Rows cellFaces = buildCellFaces(mesh);
+    return MeshFaults(mesh, cellFaces, {}).poorFaces();
+}
+
+class ShakenBlocks : public testing::TestWithParam<unsigned> {};
+
+TEST_P(ShakenBlocks, HaveFewerFacesBeyondTheLimits) {
+    const PolyMesh before = shaken(GetParam());
+    const QualityReport old = measureQuality(before);
+    ASSERT_GT(old.dictionaryFaces, 10);
+    PolyMesh mesh = before;
+    const LastResort done = changePoorPlaces(mesh, poorFaces(mesh), {});
+    EXPECT_EQ(mesh.validate(), "");
+    EXPECT_EQ(mesh.points, before.points);
+    EXPECT_EQ(mesh.cells, before.cells - done.merged);
+    EXPECT_GT(done.merged, 0);
+    EXPECT_GT(done.divided, 0);
+    const QualityReport now = measureQuality(mesh);
+    EXPECT_LT(now.dictionaryFaces, 0.8 * static_cast<double>(old.dictionaryFaces));
+    for (Index i = 0; i < now.dictionary.size(); ++i) EXPECT_LE(now.dictionary[i].faces, old.dictionary[i].faces) << now.dictionary[i].key;
+    EXPECT_LE(now.negativeVolumeCells, old.negativeVolumeCells);
+    EXPECT_LE(now.wrongOrientedFaces, old.wrongOrientedFaces);
+    EXPECT_LE(now.smallDeterminantCells, old.smallDeterminantCells);
+    EXPECT_LE(now.tetErrors, old.tetErrors);
+    EXPECT_NEAR(now.totalVolume, old.totalVolume, 0.01 * old.totalVolume); // divided faces of the boundary
+    ASSERT_EQ(done.cellOf.size(), Index(before.cells));
+    for (Index c = 0; c < done.cellOf.size(); ++c) EXPECT_LE(done.cellOf[c], static_cast<std::int32_t>(c));
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, ShakenBlocks, testing::Range(1u, 9u));
+
+TEST(LastResort, LeavesGoodMeshesAlone) {
+    const PolyMesh before = shaken(1, 0.05);
+    PolyMesh mesh = before;
+    std::vector<std::int32_t> all(Index(mesh.faces()));
+    std::iota(all.begin(), all.end(), 0);
+    const LastResort done = changePoorPlaces(mesh, all, {});
+    EXPECT_EQ(done.merged + done.divided, 0);
+    EXPECT_TRUE(done.cellOf.empty());
+    EXPECT_EQ(mesh.checksum(), before.checksum());
+}
+
+TEST(LastResort, UnitesNoLayers) {
+    PolyMesh mesh = shaken(2);
+    const std::int32_t cells = mesh.cells;
+    const LastResort done = changePoorPlaces(mesh, poorFaces(mesh), {}, 0);
+    EXPECT_EQ(done.merged, 0);
+    EXPECT_GT(done.divided, 0);
+    EXPECT_EQ(mesh.cells, cells);
+    EXPECT_EQ(mesh.validate(), "");
+}
+
+TEST(LastResort, UnitesNoRegions) {
+    PolyMesh mesh = shaken(2);
+    for (std::int32_t c = 0; c < mesh.cells; ++c) mesh.cellRegion.push_back(c);
+    EXPECT_EQ(changePoorPlaces(mesh, poorFaces(mesh), {}).merged, 0);
+}
+
+TEST(LastResort, SameOnAnyNumberOfThreads) {
+    std::uint64_t sum = 0;
+    for (const std::size_t threads : {1u, 2u, 3u}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        PolyMesh mesh = shaken(5);
+        EXPECT_GT(changePoorPlaces(mesh, poorFaces(mesh), {}).merged, 0);
+        if (threads == 1) sum = mesh.checksum();
+        EXPECT_EQ(mesh.checksum(), sum) << threads << " threads";
+    }
+}
+
+} // namespace
+} // namespace i2b::test
