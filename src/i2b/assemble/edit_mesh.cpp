@@ -58,10 +58,13 @@ class FaceOrder {
 // What becomes of each face.
 class Fans {
   public:
-    Fans(const PolyMesh& mesh, const MeshEdits& edits) : mesh_(mesh), fans_(edits.fans) {}
+    Fans(const PolyMesh& mesh, const MeshEdits& edits) : mesh_(mesh), fans_(edits.fans), isFan_(Index(mesh.faces()), 0) {
+        for (const auto& [face, from] : fans_) isFan_[Index(face)] = 1;
+    }
     const std::uint32_t* of(Index face) const {
+        if (!isFan_[face]) return nullptr; // nearly all
         const auto at = std::lower_bound(fans_.begin(), fans_.end(), face, [](const auto& fan, Index f) { return Index(fan.first) < f; });
-        return at != fans_.end() && Index(at->first) == face ? &at->second : nullptr;
+        return &at->second;
     }
     std::uint32_t pieces(Index face) const { return of(face) ? size(face) - 2 : 1; }
     std::uint32_t vertices(Index face) const { return of(face) ? 3 * (size(face) - 2) : size(face); } // of all pieces
@@ -70,6 +73,7 @@ class Fans {
     std::uint32_t size(Index face) const { return mesh_.faceOffsets[face + 1] - mesh_.faceOffsets[face]; }
     const PolyMesh& mesh_;
     const std::vector<std::pair<std::int32_t, std::uint32_t>>& fans_;
+    std::vector<std::uint8_t> isFan_; // per face
 };
 
 // Where what comes of each face in the new order begins; one more at the end.

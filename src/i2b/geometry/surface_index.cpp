@@ -295,9 +295,9 @@ struct SurfaceIndex::Impl {
     TriangleTree tree;
 
     template <class Accept>
-    ClosestPoint closest(const Vec3& q, double radius, const Accept& accept) const;
+    ClosestPoint closest(const Vec3& q, double radius, const Accept& accept, double enough = -1) const;
     template <class V, class Accept>
-    void walkClosest(const Vec3& q, const Accept& accept, ClosestPoint& best, double& best2) const;
+    void walkClosest(const Vec3& q, const Accept& accept, double enough2, ClosestPoint& best, double& best2) const;
     template <class Visit>
     bool walkBox(const Box& box, const Visit& visit) const;
 };
@@ -305,7 +305,7 @@ struct SurfaceIndex::Impl {
 // V: the lanes boxes are measured in; single precision unless q lies so far out that its rounding would blur
 // them.
 template <class V, class Accept>
-void SurfaceIndex::Impl::walkClosest(const Vec3& q, const Accept& accept, ClosestPoint& best,
+void SurfaceIndex::Impl::walkClosest(const Vec3& q, const Accept& accept, double enough2, ClosestPoint& best,
                                      double& best2) const {
     using Real = std::remove_cvref_t<decltype(V{}[0])>;
     const Vec3 about = q - tree.centre;
@@ -333,6 +333,7 @@ void SurfaceIndex::Impl::walkClosest(const Vec3& q, const Accept& accept, Closes
                 best.triangle = t.id;
                 if (d2 < best2) limit = limitOf(d2);
                 best2 = d2;
+                if (d2 <= enough2) return;
             }
             if (!stack.pop(limit, item)) return;
             continue;
@@ -356,16 +357,17 @@ void SurfaceIndex::Impl::walkClosest(const Vec3& q, const Accept& accept, Closes
 }
 
 template <class Accept>
-ClosestPoint SurfaceIndex::Impl::closest(const Vec3& q, double radius, const Accept& accept) const {
+ClosestPoint SurfaceIndex::Impl::closest(const Vec3& q, double radius, const Accept& accept, double enough) const {
     ClosestPoint best;
     if (tree.nodes.empty() || !(radius >= 0)) return best;
     // Rounding must not lose an answer at the radius itself: look a trifle farther, then compare the
     // distance.
     double best2 = radius * radius * (1 + 8 * eps);
+    const double enough2 = enough >= 0 ? enough * enough : -1;
     if (maxAbs(q - tree.centre) < 4 * tree.reach)
-        walkClosest<FloatLanes>(q, accept, best, best2);
+        walkClosest<FloatLanes>(q, accept, enough2, best, best2);
     else
-        walkClosest<Lanes>(q, accept, best, best2);
+        walkClosest<Lanes>(q, accept, enough2, best, best2);
     if (!best) return best;
     best.distance = std::sqrt(best2);
     return best.distance <= radius ? best : ClosestPoint{};
@@ -408,6 +410,10 @@ const Surface& SurfaceIndex::surface() const { return *impl_->surface; }
 
 ClosestPoint SurfaceIndex::closest(const Vec3& q, double radius) const {
     return impl_->closest(q, radius, [](std::uint32_t) { return true; });
+}
+
+ClosestPoint SurfaceIndex::closeEnough(const Vec3& q, double radius, double enough) const {
+    return impl_->closest(q, radius, [](std::uint32_t) { return true; }, enough);
 }
 
 ClosestPoint SurfaceIndex::closest(const Vec3& q, double radius,

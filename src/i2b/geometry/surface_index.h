@@ -42,6 +42,8 @@ class SurfaceIndex {
     // As closest(), over the triangles that accept() takes.
     ClosestPoint closest(const Vec3& q, double radius,
                          const std::function<bool(std::uint32_t)>& accept) const;
+    // As closest(), or any point not farther than `enough`: cheaper where nothing nearer matters.
+    ClosestPoint closeEnough(const Vec3& q, double radius, double enough) const;
     // The first triangle along the closed segment, from a; among equals the lowest number. Rounding decides
     // for the hit (1e-13 of the segment's and the triangle's size), so that nothing slips between triangles
     // sharing an edge.

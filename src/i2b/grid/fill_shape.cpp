@@ -65,10 +65,9 @@ Cover ShapeFill::cover(const Block& block) const {
     const std::int32_t n = 1 << block.size;
     const Index3& o = block.origin;
     const Box box{lattice_.corner(level_, o), lattice_.corner(level_, {o[0] + n, o[1] + n, o[2] + n})};
-    const Cover cover = coverOf(shape_, box);
-    if (cover != Cover::some) return cover;
     const Vec3 e = box.extent();
-    return block.size == 0 || std::max(e.x, std::max(e.y, e.z)) <= grain_ ? Cover::all : cover;
+    if (block.size == 0 || std::max(e.x, std::max(e.y, e.z)) <= grain_) return meets(shape_, box) ? Cover::all : Cover::none;
+    return coverOf(shape_, box);
 }
 
 void ShapeFill::addBits(const Block& block, const Index3& node, LeafBits& bits) const {

@@ -133,7 +133,8 @@ Cover coverOf(const Cylinder& c, const Box& box) {
 
 Cover coverOf(const PartsBand& b, const Box& box) {
     const double half = 0.5 * norm(box.extent()) * (1 + 1e-12);
-    const ClosestPoint near = b.parts->index.closest(box.centre(), b.distance + half);
+    // From what is near enough to the middle every corner is.
+    const ClosestPoint near = b.parts->index.closeEnough(box.centre(), b.distance + half, b.distance - half);
     if (!near) return Cover::none;
     const Vec3 far = cwiseMax(box.hi - near.point, near.point - box.lo); // from one point of the parts to the farthest corner
     return norm2(far) <= b.distance * b.distance ? Cover::all : Cover::some;
@@ -196,6 +197,13 @@ double segmentBoxDistance2(const Vec3& from, const Vec3& to, const Box& box) {
 
 Cover coverOf(const Shape& shape, const Box& box) {
     return std::visit([&](const auto& s) { return coverOf(s, box); }, shape);
+}
+
+bool meets(const Shape& shape, const Box& box) {
+    const PartsBand* const band = std::get_if<PartsBand>(&shape);
+    if (!band) return coverOf(shape, box) != Cover::none;
+    const double reach = band->distance + 0.5 * norm(box.extent()) * (1 + 1e-12);
+    return bool(band->parts->index.closeEnough(box.centre(), reach, reach));
 }
 
 Box boundsOf(const Shape& shape) {

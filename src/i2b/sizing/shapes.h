@@ -40,6 +40,7 @@ enum class Cover : std::uint8_t { none, some, all };
 // How much of the box the shape covers. `some` may be said of a box that is covered wholly, and by PartsBand of one that
 // lies up to half its diagonal beyond the distance.
 Cover coverOf(const Shape& shape, const Box& box);
+bool meets(const Shape& shape, const Box& box); // coverOf() is not none
 // All of the shape lies inside.
 Box boundsOf(const Shape& shape);
 // m^3, of the shape itself; 0 for curves.
