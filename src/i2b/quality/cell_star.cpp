@@ -78,25 +78,34 @@ void CellStar::take(const std::vector<std::int32_t>& points, const std::vector<s
         firstFace_.push_back(static_cast<std::uint32_t>(faceOf_.size()));
     }
     shapes_.resize(faces_.size()), own_.resize(cells_.size());
-    measured_ = false;
+    shapeTurn_.assign(faces_.size(), 0), ownTurn_.assign(cells_.size(), 0);
+    turn_ = 0, tetOrder_.clear();
 }
 
-void CellStar::measureShapes() {
-    for (Index i = 0; i < faces_.size(); ++i) {
-        if (faces_[i].moves || !measured_) shapes_[i] = measureFace(mesh_, faces_[i].face);
-    }
-    measured_ = true;
+const FaceShape& CellStar::shapeOf(Index i) {
+    if (shapeTurn_[i] == 0 || (faces_[i].moves && shapeTurn_[i] != turn_)) shapes_[i] = measureFace(mesh_, faces_[i].face);
+    shapeTurn_[i] = turn_;
+    return shapes_[i];
 }
 
 std::span<const FaceShape> CellStar::shapesOf(Index i) {
     row_.resize(firstFace_[i + 1] - firstFace_[i]);
-    for (Index k = 0; k < row_.size(); ++k) row_[k] = shapes_[faceOf_[firstFace_[i] + k]];
+    for (Index k = 0; k < row_.size(); ++k) row_[k] = shapeOf(faceOf_[firstFace_[i] + k]);
     return row_;
+}
+
+const CellMoments& CellStar::momentsOf(std::int32_t place, std::int32_t cell) {
+    if (place < 0) return moments_[Index(cell)];
+    const auto i = Index(place);
+    if (ownTurn_[i] != turn_) own_[i] = measureCell(mesh_, cellFaces_[cell], shapesOf(i), cell);
+    ownTurn_[i] = turn_;
+    return own_[i];
 }
 
 void CellStar::judgeCell(Index i, Badness& out) {
     const std::span<const std::int32_t> faces = cellFaces_[cells_[i]];
-    const CellMoments m = own_[i] = measureCell(mesh_, faces, shapesOf(i), cells_[i]);
+    const CellMoments& m = own_[i] = measureCell(mesh_, faces, shapesOf(i), cells_[i]);
+    ownTurn_[i] = turn_;
     if (!(m.volume > 0)) out.invalid = true, add(out, wrong);
     for (Index k = 0; k < faces.size(); ++k) {
         const Vec3 arm = row_[k].centre - m.centre;
@@ -112,7 +121,9 @@ void CellStar::judgeCell(Index i, Badness& out) {
     add(out, std::min(wrong, limits_.determinant / std::max(determinant, 1e-300)));
 }
 
-void CellStar::judgeFace(const Face& face, const FaceShape& shape, Badness& out) const {
+void CellStar::judgeFace(Index i, Badness& out) {
+    const Face& face = faces_[i];
+    const FaceShape& shape = shapeOf(i);
     const std::int32_t owner = mesh_.owner[Index(face.face)];
     const CellMoments& own = momentsOf(face.owner, owner);
     if (face.face >= mesh_.internalFaces()) {
@@ -130,13 +141,13 @@ void CellStar::judgeFace(const Face& face, const FaceShape& shape, Badness& out)
     add(out, std::min(wrong, limits_.volumeRatio / std::max(values.ratio, 1e-300)));
 }
 
-void CellStar::judgeTets(const Face& face, const FaceShape& shape, TetLack& out) const {
+double CellStar::tetShareOf(Index i) {
+    const Face& face = faces_[i];
+    const FaceShape& shape = shapeOf(i);
     const Vec3& own = momentsOf(face.owner, mesh_.owner[Index(face.face)]).centre;
     const bool inner = face.face < mesh_.internalFaces();
     const Vec3* nei = inner ? &momentsOf(face.neighbour, mesh_.neighbour[Index(face.face)]).centre : nullptr;
-    const double share = tetShare(mesh_, face.face, shape.centre, shape.area, own, nei, leastTets);
-    if (share < leastTets) out.sum += (leastTets - share) * (leastTets - share);
-    out.undivided = out.undivided || share < undividedShare;
+    return tetShare(mesh_, face.face, shape.centre, shape.area, own, nei, leastTets);
 }
 
 // f(other end) for the edges of faces that end at a point.
@@ -166,18 +177,31 @@ Vec3 CellStar::middleOf(std::int32_t point) const {
 }
 
 Badness CellStar::judge() {
-    measureShapes();
+    ++turn_;
     Badness out;
     for (Index i = 0; i < cells_.size(); ++i) judgeCell(i, out);
-    for (Index i = 0; i < faces_.size(); ++i) judgeFace(faces_[i], shapes_[i], out);
+    for (Index i = 0; i < faces_.size(); ++i) judgeFace(i, out);
     return out;
 }
 
-TetLack CellStar::judgeTets() {
-    measureShapes();
-    for (Index i = 0; i < cells_.size(); ++i) own_[i] = measureCell(mesh_, cellFaces_[cells_[i]], shapesOf(i), cells_[i]);
+TetLack CellStar::judgeTets(double most) {
+    ++turn_;
     TetLack out;
-    for (Index i = 0; i < faces_.size(); ++i) judgeTets(faces_[i], shapes_[i], out);
+    const auto add = [&](double share) {
+        if (share < leastTets) out.sum += (leastTets - share) * (leastTets - share);
+        out.undivided = out.undivided || share < undividedShare;
+    };
+    if (tetOrder_.empty()) {
+        std::vector<std::pair<double, std::uint32_t>> shares(faces_.size());
+        for (std::uint32_t i = 0; i < shares.size(); ++i) shares[i] = {tetShareOf(i), i};
+        std::sort(shares.begin(), shares.end());
+        for (const auto& [share, i] : shares) tetOrder_.push_back(i), add(share);
+        return out;
+    }
+    for (const std::uint32_t i : tetOrder_) {
+        if (!(out.sum < most)) break;
+        add(tetShareOf(i));
+    }
     return out;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include "i2b/quality/mesh_geometry.h"
 #include "i2b/quality/quality_report.h"
+#include <limits>
 
 namespace i2b {
 
@@ -33,8 +34,8 @@ class CellStar {
     const std::vector<std::int32_t>& cells() const { return cells_; } // ascending
     // With these points of the mesh as they are now; no others may have moved since.
     Badness judge();
-    // The same; in no other figure.
-    TetLack judgeTets();
+    // The same of tetrahedra, which are in no other figure. Looks no further where the sum comes to `most`.
+    TetLack judgeTets(double most = std::numeric_limits<double>::infinity());
     // m, of the edges that end at the point, one of those gathered.
     double shortestEdgeAt(std::int32_t point) const;
     // Mean of the other ends of these edges, each as often as faces have it.
@@ -48,12 +49,13 @@ class CellStar {
     bool uses(std::int32_t face) const;
     template <class F>
     void forEdgesAt(std::int32_t point, const F& f) const;
-    void measureShapes();
     void judgeCell(std::size_t i, Badness& out);
-    void judgeFace(const Face& face, const FaceShape& shape, Badness& out) const;
-    void judgeTets(const Face& face, const FaceShape& shape, TetLack& out) const;
-    std::span<const FaceShape> shapesOf(std::size_t i);
-    const CellMoments& momentsOf(std::int32_t place, std::int32_t cell) const { return place >= 0 ? own_[std::size_t(place)] : moments_[std::size_t(cell)]; }
+    void judgeFace(std::size_t i, Badness& out);
+    double tetShareOf(std::size_t i);
+    // Worked out once a turn, where they are asked for.
+    const FaceShape& shapeOf(std::size_t i);
+    std::span<const FaceShape> shapesOf(std::size_t cell);
+    const CellMoments& momentsOf(std::int32_t place, std::int32_t cell);
 
     const PolyMesh& mesh_;
     const Rows& cellFaces_;
@@ -65,7 +67,9 @@ class CellStar {
     std::vector<std::uint32_t> faceOf_, firstFace_;    // the faces of each cell, places in faces_
     std::vector<FaceShape> shapes_, row_;
     std::vector<CellMoments> own_;
-    bool measured_ = false;                            // shapes_ has the faces that do not move
+    std::uint32_t turn_ = 0;                           // counts the looks
+    std::vector<std::uint32_t> shapeTurn_, ownTurn_;   // of what shapes_ and own_ hold; 0: nothing
+    std::vector<std::uint32_t> tetOrder_;              // places in faces_: what lacked most in the first look comes first; or empty
 };
 
 } // namespace i2b

@@ -2,6 +2,7 @@
 #include "i2b/fit/corner.h"
 #include "i2b/quality/optimise_worker.h"
 #include <cmath>
+#include <optional>
 
 namespace i2b {
 namespace {
@@ -66,13 +67,17 @@ bool Optimiser::mendNodeTets(const Task& task, Worker& worker) {
     const Vec3 from = worker.from;
     const TetLack before = worker.tetsAt(from);
     if (!before.undivided) return false;
-    const Badness limits = worker.at(from);
+    std::optional<Badness> limits; // where it is; asked for by what would be better
+    const auto keepsLimits = [&](const Vec3& to) {
+        if (!limits) limits = worker.at(from);
+        return mayStand(worker.at(to), *limits);
+    };
     const Vec3 toMiddle = withinSides(worker.middle() - from, outside);
     Vec3 best = from;
     double least = before.sum * (1 - leastGain);
     const auto tryPlace = [&](const Vec3& to) {
-        const double tets = worker.tetsAt(to).sum;
-        if (tets < least && mayStand(worker.at(to), limits) && isFree(task.node, to) && keepsFolds(task.node, to)) least = tets, best = to;
+        const double tets = worker.tetsAt(to, least).sum;
+        if (tets < least && keepsLimits(to) && isFree(task.node, to) && keepsFolds(task.node, to)) least = tets, best = to;
     };
     const auto tryStep = [&](const Vec3& step) { tryPlace(onWall(task.node, from, from + step)); };
     for (const double share : towardsMiddle) tryStep(toMiddle * share);

@@ -45,9 +45,9 @@ struct Optimiser::Worker {
         put(to);
         return star.judge();
     }
-    TetLack tetsAt(const Vec3& to) {
+    TetLack tetsAt(const Vec3& to, double most = std::numeric_limits<double>::infinity()) {
         put(to);
-        return star.judgeTets();
+        return star.judgeTets(most);
     }
     void put(const Vec3& to) {
         moved.clear();
