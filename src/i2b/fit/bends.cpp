@@ -8,10 +8,19 @@
 namespace i2b {
 namespace {
 
-constexpr double across = 0.03;      // of h: a quad whose middle is farther off cuts across something
-constexpr double gain = 0.5;         // share of that, at most, that the pieces may be off on average: on a sphere it is 0.9
+// What a cut must bring. off: of h, the quad's middle at least; gain: share of that, at most, that the pieces may be off on
+// average. On a sphere it is about 0.9.
+struct Want { double off, gain; };
+constexpr Want want{0.005, 0.95};
+// Where it may make the cell behind the front concave: of quads that lie along the geometry, and of others. Smooth walls stay
+// quads.
+constexpr Want concaveWant{0.03, 0.5}, leantConcaveWant{0.01, 0.75};
+constexpr double leastBulge = 0.05;  // of h: of the front's quad at the cut, for the cell behind to stay convex as nodes go on moving
 constexpr double worstCorner = 0.1;  // scaled Jacobian that the prisms of the pieces must have
+const double leant = std::cos(6 * 3.14159265358979323846 / 180);
 const double tilted = std::cos(25 * 3.14159265358979323846 / 180);
+
+bool brings(const Want& wanted, double before, double after, double h) { return before > wanted.off * h && after < wanted.gain * before; }
 
 using Quad = std::array<std::size_t, 4>; // vertices
 
@@ -28,6 +37,7 @@ class BendCutter {
     };
     Piece pieceOf(std::span<const Vec3> x, double h) const;
     bool isSound(std::size_t a, std::size_t b, std::size_t c) const; // in the sense of the face
+    bool mayMakeConcave(const Quad& q, int cut) const;
 
     const Front& front_;
     const SurfaceIndex& index_;
@@ -48,18 +58,30 @@ bool BendCutter::isSound(std::size_t a, std::size_t b, std::size_t c) const {
     return std::min({front_.cornerAt(a, c, b), front_.cornerAt(b, a, c), front_.cornerAt(c, b, a)}) >= worstCorner;
 }
 
+// Does the edge between the front's pieces stick into the cell behind it?
+bool BendCutter::mayMakeConcave(const Quad& q, int cut) const {
+    Vec3 bulge, toWall;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Vec3& f = front_.front[q[i]];
+        bulge += static_cast<int>(i % 2) == cut ? f : -f;
+        toWall += front_.wall(q[i]) - f;
+    }
+    return !(dot(bulge, normalized(toWall)) > leastBulge * front_.h[q[0]]);
+}
+
 int BendCutter::cutOf(const Quad& q) const {
     const double h = front_.h[q[0]];
     const std::array<Vec3, 4> x{front_.wall(q[0]), front_.wall(q[1]), front_.wall(q[2]), front_.wall(q[3])};
     const Piece whole = pieceOf(x, h);
-    if (whole.off <= across * h) return -1;
+    if (whole.off <= want.off * h) return -1;
     int best = -1;
-    double least = gain * whole.off;
+    double least = want.gain * whole.off;
     for (const int d : {0, 1}) {
         const auto i = static_cast<std::size_t>(d), j = i + 1, k = i + 2, l = (i + 3) % 4;
         const Piece one = pieceOf(std::array{x[i], x[j], x[k]}, h), other = pieceOf(std::array{x[i], x[k], x[l]}, h);
         const double off = 0.5 * (one.off + other.off);
         if (!(off < least) || std::min(one.cosine, other.cosine) < std::min(tilted, whole.cosine)) continue;
+        if (!brings(whole.cosine < leant ? leantConcaveWant : concaveWant, whole.off, off, h) && mayMakeConcave(q, d)) continue;
         if (!isSound(q[i], q[j], q[k]) || !isSound(q[i], q[k], q[l])) continue;
         least = off, best = d;
     }

@@ -1,4 +1,5 @@
-// Quads of the wall that cut across a bend of the geometry: where one of their diagonals lies on it, they are cut along that.
+// Quads of the wall that cut across a bend of the geometry: where the halves along one of their diagonals are
+// nearer to it, they are cut along that; where that may make a cell of the core concave, only if they are much nearer.
 //
 // Wang and Srinivasan (2002) have no such step; a quad whose corners are all on the geometry and whose middle is not has a
 // diagonal on either side of the bend, and one of the two is nearer.
