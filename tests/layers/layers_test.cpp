@@ -239,5 +239,49 @@ TEST(Layers, ValidateNamesTheFault) {
     EXPECT_THAT(stack.validate(s.front), testing::HasSubstr("do not fall"));
 }
 
+// Cells that have become one count once in their stack, and the report says why there are fewer; what hangs on cells at the
+// wall stays in the order of cells.
+TEST(LayerReport, CountsMergedCellsOnce) {
+    Sample s;
+    LayerOptions options;
+    options.count = 3;
+    const LayerStack stack = makeLayers(s.front, options);
+    ASSERT_TRUE(stack.uniform());
+    constexpr std::int32_t core = 100;
+    const auto cells = static_cast<std::size_t>(core) + stack.cells();
+    const auto cellOf = [&](std::size_t face, int cell) { return static_cast<std::size_t>(core) + stack.cellOffset(face) + static_cast<std::size_t>(cell); };
+    std::vector<std::int32_t> number(cells);
+    std::iota(number.begin(), number.end(), 0);
+    number[cellOf(2, 2)] = number[cellOf(2, 1)];  // two of a stack
+    number[cellOf(5, 2)] = number[cellOf(4, 2)];  // side by side, at the wall
+    number[cellOf(7, 0)] = 3;                     // with a cell of the core
+    const WallLayers before = measureLayers(s.front, stack);
+    WallLayers walls = before;
+    settleCells(walls, stack, core, number, {static_cast<std::int32_t>(cellOf(6, 2))});
+    for (std::size_t f = 0; f < s.faces(); ++f) {
+        EXPECT_EQ(walls.achieved[f], f == 2 ? 2 : before.achieved[f]) << f;
+        EXPECT_EQ(walls.cause[f], f == 2 ? LayerCause::merged : before.cause[f]) << f;
+        EXPECT_EQ(walls.wallCell[f], number[cellOf(f, 2)]) << f;
+    }
+    const LayerReport report = summarize(walls, s.front, s.parts, 3);
+    std::int64_t merged = 0;
+    for (const LayerRow& row : report.parts) merged += row.causes[static_cast<std::size_t>(LayerCause::merged)];
+    EXPECT_EQ(merged, 1);
+    EXPECT_EQ(std::accumulate(report.parts.begin(), report.parts.end(), std::int64_t(0), [](std::int64_t n, const LayerRow& row) { return n + row.faces; }),
+              static_cast<std::int64_t>(s.faces()) + 1); // one of them in two pieces
+    number[cellOf(7, 2)] = 3; // now the wall's cell is one of the core, before all others
+    walls = before;
+    settleCells(walls, stack, core, number, {});
+    sortByCell(walls);
+    EXPECT_EQ(walls.wallCell.size(), s.faces() - 1);
+    EXPECT_TRUE(std::ranges::adjacent_find(walls.wallCell, std::ranges::greater_equal()) == walls.wallCell.end());
+    EXPECT_EQ(walls.wallCell.front(), 3);
+    EXPECT_EQ(walls.first.front(), before.first[7]);
+    WallLayers same = before;
+    settleCells(same, stack, core, {}, {});
+    sortByCell(same);
+    EXPECT_EQ(same.first, before.first);
+}
+
 } // namespace
 } // namespace i2b::test

@@ -33,9 +33,9 @@ TEST_P(ShakenBlocks, HaveFewerFacesBeyondTheLimits) {
     const LastResort done = changePoorPlaces(mesh, poorFaces(mesh), {});
     EXPECT_EQ(mesh.validate(), "");
     EXPECT_EQ(mesh.points, before.points);
-    EXPECT_EQ(mesh.cells, before.cells - done.merged);
-    EXPECT_GT(done.merged, 0);
-    EXPECT_GT(done.divided, 0);
+    EXPECT_EQ(mesh.cells, before.cells - done.changes.merged);
+    EXPECT_GT(done.changes.merged, 0);
+    EXPECT_GT(done.changes.divided, 0);
     const QualityReport now = measureQuality(mesh);
     EXPECT_LT(now.dictionaryFaces, 0.8 * static_cast<double>(old.dictionaryFaces));
     for (Index i = 0; i < now.dictionary.size(); ++i) EXPECT_LE(now.dictionary[i].faces, old.dictionary[i].faces) << now.dictionary[i].key;
@@ -44,6 +44,7 @@ TEST_P(ShakenBlocks, HaveFewerFacesBeyondTheLimits) {
     EXPECT_LE(now.smallDeterminantCells, old.smallDeterminantCells);
     EXPECT_LE(now.tetErrors, old.tetErrors);
     EXPECT_NEAR(now.totalVolume, old.totalVolume, 0.01 * old.totalVolume); // divided faces of the boundary
+    EXPECT_EQ(done.changes.places.size(), std::size_t(done.changes.merged + done.changes.divided));
     ASSERT_EQ(done.cellOf.size(), Index(before.cells));
     for (Index c = 0; c < done.cellOf.size(); ++c) EXPECT_LE(done.cellOf[c], static_cast<std::int32_t>(c));
 }
@@ -56,7 +57,7 @@ TEST(LastResort, LeavesGoodMeshesAlone) {
     std::vector<std::int32_t> all(Index(mesh.faces()));
     std::iota(all.begin(), all.end(), 0);
     const LastResort done = changePoorPlaces(mesh, all, {});
-    EXPECT_EQ(done.merged + done.divided, 0);
+    EXPECT_EQ(done.changes.merged + done.changes.divided, 0);
     EXPECT_TRUE(done.cellOf.empty());
     EXPECT_EQ(mesh.checksum(), before.checksum());
 }
@@ -65,8 +66,8 @@ TEST(LastResort, UnitesNoLayers) {
     PolyMesh mesh = shaken(2);
     const std::int32_t cells = mesh.cells;
     const LastResort done = changePoorPlaces(mesh, poorFaces(mesh), {}, 0);
-    EXPECT_EQ(done.merged, 0);
-    EXPECT_GT(done.divided, 0);
+    EXPECT_EQ(done.changes.merged, 0);
+    EXPECT_GT(done.changes.divided, 0);
     EXPECT_EQ(mesh.cells, cells);
     EXPECT_EQ(mesh.validate(), "");
 }
@@ -74,7 +75,7 @@ TEST(LastResort, UnitesNoLayers) {
 TEST(LastResort, UnitesNoRegions) {
     PolyMesh mesh = shaken(2);
     for (std::int32_t c = 0; c < mesh.cells; ++c) mesh.cellRegion.push_back(c);
-    EXPECT_EQ(changePoorPlaces(mesh, poorFaces(mesh), {}).merged, 0);
+    EXPECT_EQ(changePoorPlaces(mesh, poorFaces(mesh), {}).changes.merged, 0);
 }
 
 TEST(LastResort, SameOnAnyNumberOfThreads) {
@@ -82,7 +83,7 @@ TEST(LastResort, SameOnAnyNumberOfThreads) {
     for (const std::size_t threads : {1u, 2u, 3u}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
         PolyMesh mesh = shaken(5);
-        EXPECT_GT(changePoorPlaces(mesh, poorFaces(mesh), {}).merged, 0);
+        EXPECT_GT(changePoorPlaces(mesh, poorFaces(mesh), {}).changes.merged, 0);
         if (threads == 1) sum = mesh.checksum();
         EXPECT_EQ(mesh.checksum(), sum) << threads << " threads";
     }

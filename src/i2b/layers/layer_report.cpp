@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace i2b {
 namespace {
@@ -75,6 +76,48 @@ WallLayers measureLayers(const Front& front, const LayerStack& stack) {
     return w;
 }
 
+void settleCells(WallLayers& walls, const LayerStack& stack, std::int32_t firstLayerCell, const std::vector<std::int32_t>& cellOf,
+                 const std::vector<std::int32_t>& morePieces) {
+    walls.pieces.assign(morePieces.empty() ? 0 : walls.wallCell.size(), 1);
+    parallelFor(walls.wallCell.size(), [&](std::size_t f) {
+        const std::int32_t last = firstLayerCell + walls.wallCell[f], first = last - stack.cellsOf(f) + 1;
+        walls.wallCell[f] = last;
+        if (cellOf.empty()) return;
+        const auto now = [&](std::int32_t cell) { return cellOf[static_cast<std::size_t>(cell)]; };
+        walls.wallCell[f] = now(last);
+        if (!walls.pieces.empty()) {
+            const auto [from, to] = std::ranges::equal_range(morePieces, last);
+            walls.pieces[f] = static_cast<std::uint8_t>(1 + (to - from));
+        }
+        std::array<std::int32_t, maxLayers + 2> cells{};
+        int n = 0;
+        for (std::int32_t c = first; c <= last; ++c) cells[static_cast<std::size_t>(n++)] = now(c);
+        std::sort(cells.begin(), cells.begin() + n);
+        const auto left = static_cast<int>(std::unique(cells.begin(), cells.begin() + n) - cells.begin());
+        if (left >= walls.achieved[f]) return;
+        walls.achieved[f] = static_cast<std::uint8_t>(left);
+        walls.cause[f] = LayerCause::merged;
+    });
+}
+
+void sortByCell(WallLayers& walls) {
+    const std::vector<std::int32_t>& cells = walls.wallCell;
+    if (std::ranges::adjacent_find(cells, std::ranges::greater_equal()) == cells.end()) return;
+    std::vector<std::size_t> order(cells.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::ranges::stable_sort(order, {}, [&](std::size_t f) { return cells[f]; });
+    const auto [from, to] = std::ranges::unique(order, {}, [&](std::size_t f) { return cells[f]; });
+    order.erase(from, to);
+    const auto pick = [&](auto& values) {
+        if (values.empty()) return;
+        std::remove_reference_t<decltype(values)> picked(order.size());
+        std::ranges::transform(order, picked.begin(), [&](std::size_t f) { return values[f]; });
+        values = std::move(picked);
+    };
+    pick(walls.asked), pick(walls.achieved), pick(walls.cause), pick(walls.first), pick(walls.thickness);
+    pick(walls.askedFirst), pick(walls.askedThickness), pick(walls.pieces), pick(walls.wallCell);
+}
+
 LayerReport summarize(const WallLayers& walls, const Front& front, const std::vector<Part>& parts, int requested) {
     LayerReport report;
     report.requested = requested;
@@ -83,10 +126,11 @@ LayerReport summarize(const WallLayers& walls, const Front& front, const std::ve
     std::vector<std::int64_t> layered(parts.size(), 0);
     double fraction = 0, first = 0;
     std::int64_t asking = 0, covered = 0, layers = 0;
-    for (std::size_t f = 0; f < walls.asked.size(); ++f) {
+    std::int64_t faces = 0;
+    const auto add = [&](std::size_t f) {
         const auto part = static_cast<std::size_t>(front.part[f]);
         LayerRow& row = rows[part];
-        ++row.faces;
+        ++row.faces, ++faces;
         row.asked = walls.asked[f];
         row.askedFirst += static_cast<double>(walls.askedFirst[f]);
         row.askedThickness += static_cast<double>(walls.askedThickness[f]);
@@ -98,15 +142,16 @@ LayerReport summarize(const WallLayers& walls, const Front& front, const std::ve
             ++asking;
             fraction += std::min(1.0, thickness / std::max(1e-300, static_cast<double>(walls.askedThickness[f])));
         }
-        if (walls.achieved[f] == 0) continue;
+        if (walls.achieved[f] == 0) return;
         ++covered, ++layered[part];
         first += height;
         row.meanFirst += height, row.meanThickness += thickness;
         report.minFirst = std::min(report.minFirst, height);
         report.maxFirst = std::max(report.maxFirst, height);
-    }
+    };
+    for (std::size_t f = 0; f < walls.asked.size(); ++f)
+        for (int piece = walls.pieces.empty() ? 1 : walls.pieces[f]; piece > 0; --piece) add(f);
     const auto per = [](double sum, std::int64_t n) { return n > 0 ? sum / static_cast<double>(n) : 0; };
-    const auto faces = static_cast<std::int64_t>(walls.asked.size());
     report.meanCount = per(static_cast<double>(layers), faces);
     report.facesCoveredFraction = per(static_cast<double>(covered), faces);
     report.thicknessFraction = asking > 0 ? per(fraction, asking) : 1;

@@ -17,9 +17,10 @@ enum class LayerCause : std::uint8_t {
     none,       // it does not, or has no layers to carry
     taper,      // neighbours have fewer layers: so has it
     compressed, // too little room for the thickness: less growth, but the first height
-    room        // too little room for the first height, too: all heights are less
+    room,       // too little room for the first height, too: all heights are less
+    merged      // cells of its stack are one, since no other way brought them within the limits of quality
 };
-constexpr std::array<const char*, 4> layerCauseNames{"none", "taper", "compressed", "room"};
+constexpr std::array<const char*, 5> layerCauseNames{"none", "taper", "compressed", "room", "merged"};
 
 // Per wall face, in the order of the front. Heights are means over a face's vertices.
 struct WallLayers {
@@ -30,6 +31,7 @@ struct WallLayers {
     std::vector<float> first;            // m, height of the cell at the wall
     std::vector<float> thickness;        // m, of the layers achieved
     std::vector<float> askedFirst, askedThickness; // m; 0 where none are asked for
+    std::vector<std::uint8_t> pieces;    // faces of the mesh that it is now; empty: one each
 };
 
 struct LayerRow {
@@ -39,7 +41,7 @@ struct LayerRow {
     double meanCount = 0;                // achieved
     double meanFirst = 0, meanThickness = 0;   // m, over the faces that have layers
     std::int64_t faces = 0;
-    std::array<std::int64_t, 4> causes{};      // faces, by LayerCause
+    std::array<std::int64_t, 5> causes{};      // faces, by LayerCause
 };
 
 struct LayerReport {
@@ -52,6 +54,13 @@ struct LayerReport {
 };
 
 WallLayers measureLayers(const Front& front, const LayerStack& stack);
+// After cells of the mesh have become one: cellOf gives per cell of before its number now, layers from firstLayerCell on;
+// empty: nothing has changed. morePieces: cells of before, ascending, one for each face that the wall has got there. Wall cells
+// become cells of the mesh.
+void settleCells(WallLayers& walls, const LayerStack& stack, std::int32_t firstLayerCell, const std::vector<std::int32_t>& cellOf,
+                 const std::vector<std::int32_t>& morePieces);
+// In the order of cells, each cell once: of several faces at one the first.
+void sortByCell(WallLayers& walls);
 LayerReport summarize(const WallLayers& walls, const Front& front, const std::vector<Part>& parts, int requested);
 
 } // namespace i2b

@@ -131,17 +131,17 @@ MeshResult generate(const Options& options, Context& context) {
     const std::int32_t thinFrom = walls.laid.stack.asHighAsCan() ? out.mesh.cells : static_cast<std::int32_t>(lattice->cellCount());
     const LastResort changed = stage(
         context, "last resort", [&] { return changePoorPlaces(out.mesh, walls.repaired.unmended, options.quality, thinFrom); },
-        [](const LastResort& l) { return l.merged + l.divided; });
+        [](const LastResort& l) { return l.changes.merged + l.changes.divided; });
     out.report = reportOf(c, options, context);
     out.report.fitCutShort = walls.fitted.cutShort;
+    out.report.changes = changed.changes;
     out.walls = measureLayers(walls.front, walls.laid.stack);
+    settleCells(out.walls, walls.laid.stack, static_cast<std::int32_t>(lattice->cellCount()), changed.cellOf, changed.morePieces);
     out.report.layers = summarize(out.walls, walls.front, c.surface.parts, options.layers.count);
     out.walls.askedFirst = {}, out.walls.askedThickness = {}; // the report has them
-    for (std::int32_t& cell : out.walls.wallCell) {
-        cell += static_cast<std::int32_t>(lattice->cellCount());
-        if (!changed.cellOf.empty()) cell = changed.cellOf[static_cast<std::size_t>(cell)];
-    }
-    out.report.wallFaces = static_cast<std::int64_t>(walls.front.ownerCell.size());
+    sortByCell(out.walls);
+    for (const Patch& patch : out.mesh.patches)
+        if (patch.type == "wall") out.report.wallFaces += patch.count;
     walls.front = {}, walls.laid = {}; // from here on the mesh speaks for itself
     lattice.reset();
     judge(out, features, walls.fitted, walls.repaired, options.quality, context);

@@ -116,14 +116,18 @@ class Changer {
 };
 
 // Makes those of the changes that do not touch what an earlier one has changed; returns the groups around them, ascending.
-std::vector<std::int32_t> make(const std::vector<std::optional<Trial>>& changes, LocalEdits& edits) {
+// made: of each change whether it was.
+std::vector<std::int32_t> make(const std::vector<std::optional<Trial>>& changes, LocalEdits& edits, std::vector<std::uint8_t>& made) {
     std::vector<std::int32_t> touched;
-    for (const std::optional<Trial>& change : changes) {
+    made.assign(changes.size(), 0);
+    for (Index i = 0; i < changes.size(); ++i) {
+        const std::optional<Trial>& change = changes[i];
         if (!change) continue;
         const std::vector<std::int32_t> around = edits.neighboursOf(change->a, change->b);
         if (std::ranges::any_of(around, [&](std::int32_t g) { return std::ranges::binary_search(touched, g); })) continue;
         if (change->united) edits.unite(change->a, change->b);
         else edits.divide(change->face, change->from);
+        made[i] = 1;
         const auto middle = static_cast<std::ptrdiff_t>(touched.size());
         touched.insert(touched.end(), around.begin(), around.end());
         std::inplace_merge(touched.begin(), touched.begin() + middle, touched.end());
@@ -162,6 +166,18 @@ std::vector<std::int32_t> concaveFaces(const PolyMesh& mesh, double degrees) {
         });
 }
 
+// Per face that dividing adds to walls, the cell there; ascending.
+std::vector<std::int32_t> piecesOfWalls(const PolyMesh& mesh, const MeshEdits& edits) {
+    std::vector<std::int32_t> cells;
+    for (const auto& [face, from] : edits.fans) {
+        for (const Patch& patch : mesh.patches)
+            if (patch.type == "wall" && face >= patch.start && face < patch.start + patch.count)
+                cells.insert(cells.end(), mesh.face(face).size() - 3, mesh.owner[Index(face)]);
+    }
+    std::sort(cells.begin(), cells.end());
+    return cells;
+}
+
 } // namespace
 
 LastResort changePoorPlaces(PolyMesh& mesh, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits, std::int32_t thinFrom) {
@@ -174,9 +190,12 @@ LastResort changePoorPlaces(PolyMesh& mesh, const std::vector<std::int32_t>& poo
     for (int round = 0; round < mostRounds && !faces.empty(); ++round) {
         const Changer changer(mesh, edits, limits, thinFrom);
         std::vector<std::optional<Trial>> changes(faces.size());
+        std::vector<std::uint8_t> made;
         parallelFor(faces.size(), [&](Index i) { changes[i] = changer.find(faces[i]); }, 1);
-        const std::vector<std::int32_t> touched = make(changes, edits);
+        const std::vector<std::int32_t> touched = make(changes, edits, made);
         if (touched.empty()) break;
+        for (Index i = 0; i < faces.size(); ++i)
+            if (made[i] && summary.changes.places.size() < Tally::idLimit) summary.changes.places.push_back(measureFace(mesh, faces[i]).centre);
         const auto isTouched = [&](std::int32_t group) { return std::ranges::binary_search(touched, group); };
         Index left = 0;
         for (Index i = 0; i < faces.size(); ++i) { // that may yet be helped: by a change that had to wait, or where all is new
@@ -185,8 +204,11 @@ LastResort changePoorPlaces(PolyMesh& mesh, const std::vector<std::int32_t>& poo
         }
         faces.resize(left);
     }
-    summary.merged = edits.united(), summary.divided = edits.divided();
-    if (summary.merged + summary.divided > 0) summary.cellOf = editMesh(mesh, edits.edits());
+    summary.changes.merged = edits.united(), summary.changes.divided = edits.divided();
+    if (summary.changes.merged + summary.changes.divided == 0) return summary;
+    const MeshEdits all = edits.edits();
+    summary.morePieces = piecesOfWalls(mesh, all);
+    summary.cellOf = editMesh(mesh, all);
     return summary;
 }
 

@@ -10,9 +10,16 @@
 
 namespace i2b {
 
-struct LastResort {
+// What was done, for the report.
+struct MeshChanges {
     std::int64_t merged = 0, divided = 0; // cells that others have taken in, faces
-    std::vector<std::int32_t> cellOf;     // per cell of before its number now; empty where none has merged
+    std::vector<Vec3> places;             // m, of the faces that were to be mended; as many as reports name
+};
+
+struct LastResort {
+    MeshChanges changes;
+    std::vector<std::int32_t> cellOf; // per cell of before its number now; empty where nothing was done
+    std::vector<std::int32_t> morePieces; // cells of before, ascending: one for each face that walls have got there
 };
 
 // poorFaces: ascending; what lies around them is looked at. Cells from thinFrom on are layers of a height that was asked for, and

@@ -4,6 +4,7 @@
 #include "i2b/layers/layer_report.h"
 #include "i2b/paint/regions.h"
 #include "i2b/quality/fit_report.h"
+#include "i2b/quality/last_resort.h"
 #include "i2b/quality/off_places.h"
 #include "i2b/quality/quality_report.h"
 #include <cstdint>
@@ -34,6 +35,7 @@ struct RunReport {
     std::optional<QualityReport> quality;
     std::optional<FitReport> fit;
     std::optional<OffGeometry> offGeometry; // only beside fit
+    MeshChanges changes;                    // where no node could be moved to mend the mesh
     bool fitCutShort = false;               // by its budget of time: another run may give another mesh
     std::optional<LayerReport> layers;
     std::vector<Patch> patches;

@@ -48,6 +48,12 @@ Json fitJson(const FitReport& f) {
             {"tilted_45_face_fraction", number(f.tilted45FaceFraction)}};
 }
 
+Json changesJson(const MeshChanges& changes) {
+    Json places = Json::array();
+    for (const Vec3& p : changes.places) places.push_back(place(p));
+    return {{"merged_cells", changes.merged}, {"divided_faces", changes.divided}, {"places", places}};
+}
+
 Json layerRowJson(const LayerRow& row) {
     Json shorter;
     for (std::size_t c = 1; c < layerCauseNames.size(); ++c) shorter[layerCauseNames[c]] = row.causes[c];
@@ -156,6 +162,7 @@ std::string reportText(const RunReport& r) {
     json["points"] = r.points;
     json["wall_faces"] = r.wallFaces;
     json["quality"] = r.quality ? qualityJson(*r.quality) : Json(nullptr);
+    if (r.quality) json["quality"]["changes"] = changesJson(r.changes);
     json["fit"] = r.fit ? fitJson(*r.fit) : Json(nullptr);
     if (r.fit) json["fit"]["cut_short"] = r.fitCutShort;
     if (r.fit) json["fit"]["off_geometry"] = r.offGeometry ? offGeometryJson(*r.offGeometry) : Json(nullptr);
