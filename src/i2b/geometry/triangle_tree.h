@@ -5,14 +5,18 @@
 #pragma once
 #include "i2b/core/vec.h"
 #include "i2b/geometry/surface.h"
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
 
 namespace i2b {
+
+inline double maxAbs(const Vec3& v) { return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z))); }
 
 struct TreeTriangle {
     Vec3 a, b, c;
