@@ -62,6 +62,16 @@ TEST(LastResort, LeavesGoodMeshesAlone) {
     EXPECT_EQ(mesh.checksum(), before.checksum());
 }
 
+// 180 degrees: not asked. No face is looked at for its corners then.
+TEST(LastResort, LooksForNoConcaveFacesUnasked) {
+    PolyMesh mesh = shaken(5);
+    DictionaryLimits limits;
+    limits.concavity = 180;
+    const LastResort done = changePoorPlaces(mesh, {}, limits);
+    EXPECT_EQ(done.changes.merged + done.changes.divided, 0);
+    EXPECT_EQ(mesh.checksum(), shaken(5).checksum());
+}
+
 TEST(LastResort, UnitesNoLayers) {
     PolyMesh mesh = shaken(2);
     const std::int32_t cells = mesh.cells;

@@ -182,8 +182,9 @@ std::vector<std::int32_t> piecesOfWalls(const PolyMesh& mesh, const MeshEdits& e
 
 LastResort changePoorPlaces(PolyMesh& mesh, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits, std::int32_t thinFrom) {
     LastResort summary;
-    std::vector<std::int32_t> faces;
-    std::ranges::set_union(poorFaces, concaveFaces(mesh, limits.concavity), std::back_inserter(faces));
+    std::vector<std::int32_t> faces, concave;
+    if (DictionaryBounds(limits).concavityAsked) concave = concaveFaces(mesh, limits.concavity);
+    std::ranges::set_union(poorFaces, concave, std::back_inserter(faces));
     if (faces.empty()) return summary;
     const Rows cellFaces = buildCellFaces(mesh);
     LocalEdits edits(mesh, cellFaces);
