@@ -29,12 +29,12 @@ RepairSummary assembleAndRepair(const WallInput& in, Walls& walls, PolyMesh& mes
     return stage(
         context, "repair",
         [&] {
-            RepairSummary r = repair(mesh, walls.front, in.lattice, layers, startThickness, guide);
+            RepairSummary r = repair(mesh, walls.front, in.lattice, layers, startThickness, guide, in.limits);
             for (int round = 0; r.remaining > 0 && round < mostCuts; ++round) {
                 const std::vector<std::uint8_t> moved = std::move(r.movedWalls);
                 if (!cutUnderWrong(walls.front, layers, in.plans, *c.index, static_cast<std::int32_t>(in.lattice.cellCount()), r.wrongCells)) break;
                 mesh = assemble(parts);
-                r = repair(mesh, walls.front, in.lattice, layers, startThickness, guide);
+                r = repair(mesh, walls.front, in.lattice, layers, startThickness, guide, in.limits);
                 for (std::size_t v = 0; v < moved.size(); ++v) r.movedWalls[v] |= moved[v];
             }
             return r;

@@ -15,6 +15,7 @@ struct WallInput {
     const FeatureGraph& features;
     const WallPlans& plans;
     const FitOptions& fit;
+    const DictionaryLimits& limits; // of faces
 };
 
 struct Walls {

@@ -11,6 +11,9 @@ using Index = std::size_t;
 constexpr double least = -2;
 constexpr double leastTwist = 0.02; // cosine: minTwist of OpenFOAM's mesh quality dictionary
 constexpr double flat2 = 1e-20; // of the squared size of a face: a warp that no cell centre sees
+constexpr double leastWidth = 1e-3;  // area over the square of the reach from the centre: thinner faces have tetrahedra of no quality
+constexpr double widthScale = 40;    // so that three times that is well
+constexpr double mostReflex = 0.983; // sine of the turn at a reflex corner: a little inside maxConcave, 80 degrees
 
 // value / sqrt(size2), where that is less than enough; else enough. Most faces are far from any limit and need no root.
 double shareBelow(double enough, double value, double size2) {
@@ -39,9 +42,16 @@ class Face {
         if (neighbour) apexes_[count_++] = {*neighbour - centre, dot(normal, *neighbour - centre)};
         across_ = normalized((neighbour ? *neighbour : centre) - owner);
     }
-    bool isFlatQuad() const {
+    bool isFlat() const { // a triangle or a parallelogram
         if (v_.size() != 4) return v_.size() == 3;
         return norm2(at(0) - at(1) + at(2) - at(3)) <= flat2 * norm2(at(0) - at(2));
+    }
+    // What thinness leaves of the area.
+    double width(const Vec3& area) const {
+        double reach2 = 0;
+        for (Index i = 0; i < v_.size(); ++i) reach2 = std::max(reach2, norm2(at(i)));
+        const double widest = (enough_ / widthScale + leastWidth) * reach2;
+        return norm2(area) < widest * widest ? widthScale * (norm(area) / reach2 - leastWidth) : enough_;
     }
     double aroundCentre() const {
         double worst = enough_;
@@ -52,6 +62,21 @@ class Face {
             worst = std::min(worst, share(here, twice));
             if (turn < enough_ + leastTwist) worst = std::min(worst, turn - leastTwist);
             here = next;
+        }
+        return worst;
+    }
+    // What reflex corners leave of the turn that they may have; a turn of over 90 degrees has that more.
+    double atCorners(const Vec3& area) const {
+        double worst = enough_;
+        const Index n = v_.size();
+        Vec3 before = at(0) - at(n - 1);
+        for (Index i = 0; i < n; ++i) {
+            const Vec3 next = at(i + 1) - at(i), turn = cross(before, next);
+            if (dot(turn, area) < 0) {
+                const double sine = std::sqrt(norm2(turn) / (norm2(before) * norm2(next)));
+                worst = std::min(worst, mostReflex - (dot(before, next) < 0 ? 2 - sine : sine));
+            }
+            before = next;
         }
         return worst;
     }
@@ -88,8 +113,9 @@ class Face {
 double tetShare(const PolyMesh& mesh, std::int32_t face, const Vec3& centre, const Vec3& area, const Vec3& owner, const Vec3* neighbour,
                 double enough) {
     const Face f(mesh, face, centre, area, owner, neighbour, enough);
-    if (f.isFlatQuad()) return enough;
-    const double around = f.aroundCentre();
+    const double width = f.width(area);
+    if (f.isFlat()) return std::max(least, width);
+    const double around = std::min({width, f.aroundCentre(), f.atCorners(area)});
     return std::max(least, std::min(around, f.bestFan(around)));
 }
 

@@ -1,16 +1,17 @@
 // How well a face divides: into tetrahedra, as particle trackers and OpenFOAM's checkFaceTets ask it to, around its centre, and as a
 // fan from one of its vertices, each with the centres of the cells at its sides as apex; and into triangles around its centre that
-// face the way between the cells (checkFaceTwist).
+// face the way between the cells (checkFaceTwist); and whether it turns back at a corner (checkFaceAngles).
 #pragma once
 #include "i2b/assemble/poly_mesh.h"
 
 namespace i2b {
 
-inline constexpr double undividedShare = 1e-5; // of tetShare(): below, rounding decides
+inline constexpr double undividedShare = 2e-3; // of tetShare(): below, tetrahedra may be of no quality (under 1e-15, which falls with the fourth power)
 
 // Of a flat convex face 1, below 0 where it does not divide: the least, over its triangles, of the height of an apex over the
 // triangle's plane as a share of its height over the face's; of the fans the best one counts; and the cosine between a triangle's
-// normal and the way from cell to cell, from the limit of the twist on. At least -2.
+// normal and the way from cell to cell, from the limit of the twist on; and the sine of the turn at a reflex corner, from the limit of
+// concavity down; and the face's area over the square of its reach. At least -2.
 // centre: of the face; area: its vector, m^2; neighbour: the other cell's centre, or null. Shares over `enough` are given as
 // that.
 double tetShare(const PolyMesh& mesh, std::int32_t face, const Vec3& centre, const Vec3& area, const Vec3& owner, const Vec3* neighbour,

@@ -180,14 +180,11 @@ std::vector<std::int32_t> piecesOfWalls(const PolyMesh& mesh, const MeshEdits& e
 
 } // namespace
 
-LastResort changePoorPlaces(PolyMesh& mesh, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits, std::int32_t thinFrom) {
-    LastResort summary;
-    std::vector<std::int32_t> faces, concave;
-    if (DictionaryBounds(limits).concavityAsked) concave = concaveFaces(mesh, limits.concavity);
-    std::ranges::set_union(poorFaces, concave, std::back_inserter(faces));
-    if (faces.empty()) return summary;
-    const Rows cellFaces = buildCellFaces(mesh);
-    LocalEdits edits(mesh, cellFaces);
+namespace {
+
+// Tries and makes changes for the faces; places: of those that were to be mended (may be null).
+void seekChanges(const PolyMesh& mesh, std::vector<std::int32_t> faces, const DictionaryLimits& limits, std::int32_t thinFrom, LocalEdits& edits,
+                 std::vector<Vec3>* places) {
     for (int round = 0; round < mostRounds && !faces.empty(); ++round) {
         const Changer changer(mesh, edits, limits, thinFrom);
         std::vector<std::optional<Trial>> changes(faces.size());
@@ -195,8 +192,8 @@ LastResort changePoorPlaces(PolyMesh& mesh, const std::vector<std::int32_t>& poo
         parallelFor(faces.size(), [&](Index i) { changes[i] = changer.find(faces[i]); }, 1);
         const std::vector<std::int32_t> touched = make(changes, edits, made);
         if (touched.empty()) break;
-        for (Index i = 0; i < faces.size(); ++i)
-            if (made[i] && summary.changes.places.size() < Tally::idLimit) summary.changes.places.push_back(measureFace(mesh, faces[i]).centre);
+        for (Index i = 0; places && i < faces.size(); ++i)
+            if (made[i] && places->size() < Tally::idLimit) places->push_back(measureFace(mesh, faces[i]).centre);
         const auto isTouched = [&](std::int32_t group) { return std::ranges::binary_search(touched, group); };
         Index left = 0;
         for (Index i = 0; i < faces.size(); ++i) { // that may yet be helped: by a change that had to wait, or where all is new
@@ -205,6 +202,36 @@ LastResort changePoorPlaces(PolyMesh& mesh, const std::vector<std::int32_t>& poo
         }
         faces.resize(left);
     }
+}
+
+} // namespace
+
+std::vector<std::int32_t> facesBeyondHelp(const PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::int32_t>& poorFaces,
+                                          const DictionaryLimits& limits, std::int32_t thinFrom) {
+    LocalEdits edits(mesh, cellFaces);
+    seekChanges(mesh, poorFaces, limits, thinFrom, edits, nullptr);
+    std::vector<std::uint8_t> left(poorFaces.size(), 0);
+    parallelFor(left.size(), [&](Index i) {
+        const std::int32_t face = poorFaces[i], own = edits.of(mesh.owner[Index(face)]);
+        const std::int32_t other = edits.across(face, own) < 0 ? own : edits.across(face, own);
+        const bool within = own == other && face < mesh.internalFaces();
+        left[i] = !within && judge(edits.around({std::min(own, other), std::max(own, other)}), limits).faces > 0;
+    }, 1);
+    std::vector<std::int32_t> faces;
+    for (Index i = 0; i < left.size(); ++i)
+        if (left[i]) faces.push_back(poorFaces[i]);
+    return faces;
+}
+
+LastResort changePoorPlaces(PolyMesh& mesh, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits, std::int32_t thinFrom) {
+    LastResort summary;
+    std::vector<std::int32_t> faces, concave;
+    if (DictionaryBounds(limits).concavityAsked) concave = concaveFaces(mesh, limits.concavity);
+    std::ranges::set_union(poorFaces, concave, std::back_inserter(faces));
+    if (faces.empty()) return summary;
+    const Rows cellFaces = buildCellFaces(mesh);
+    LocalEdits edits(mesh, cellFaces);
+    seekChanges(mesh, faces, limits, thinFrom, edits, &summary.changes.places);
     summary.changes.merged = edits.united(), summary.changes.divided = edits.divided();
     if (summary.changes.merged + summary.changes.divided == 0) return summary;
     const MeshEdits all = edits.edits();

@@ -2,6 +2,7 @@
 // merged with a neighbour, since flow solvers take cells of any shape (Wang and Srinivasan 2002, section 2: badly shaped
 // cells next to the wall). Either is done where it leaves fewer faces beyond the limits and nothing worse.
 #pragma once
+#include "i2b/assemble/mesh_topology.h"
 #include "i2b/assemble/poly_mesh.h"
 #include "i2b/quality/dictionary_limits.h"
 #include <cstdint>
@@ -26,5 +27,10 @@ struct LastResort {
 // merge only with cells of the core.
 LastResort changePoorPlaces(PolyMesh& mesh, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits,
                             std::int32_t thinFrom = std::numeric_limits<std::int32_t>::max());
+
+// Those of the faces (ascending) that no such change would mend: still beyond limits, or beside one that is, when all have been tried.
+// Changes nothing.
+std::vector<std::int32_t> facesBeyondHelp(const PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::int32_t>& poorFaces,
+                                          const DictionaryLimits& limits, std::int32_t thinFrom = std::numeric_limits<std::int32_t>::max());
 
 } // namespace i2b

@@ -12,6 +12,7 @@ constexpr int patience = 2;           // sweeps, then
 constexpr int thinPatience = 4;       // the same for thin layers, however many
 constexpr std::int64_t many = 200;    // faults of which more than
 constexpr std::size_t few = 50;       // undivided faces: up to so many nothing is given up
+constexpr int backSweeps = 2;
 constexpr double stalled = 0.9;       // this share is left by a sweep are given up
 
 } // namespace
@@ -128,7 +129,7 @@ std::int64_t Optimiser::sweep(std::vector<Task>& tasks, const Move& move) {
 }
 
 std::int64_t Optimiser::mend(int sweeps, bool mayLeave) {
-    mayLeave_ = mayLeave;
+    leavers_.assign(mayLeave ? front_.front.size() : 0, 1);
     std::int64_t moves = 0, before = 0, patientFrom = 0;
     for (int i = 0; i < sweeps; ++i) {
         FaultCount count;
@@ -149,21 +150,57 @@ std::int64_t Optimiser::mend(int sweeps, bool mayLeave) {
     return moves;
 }
 
-std::int64_t Optimiser::mendTets(int sweeps) {
-    mayLeave_ = false;
+std::vector<Optimiser::Task> Optimiser::tasksOfCellsAt(const std::vector<std::int32_t>& faces) const {
+    std::vector<std::int32_t> cells;
+    for (const std::int32_t f : faces) {
+        cells.push_back(mesh_.owner[Index(f)]);
+        if (f < mesh_.internalFaces()) cells.push_back(mesh_.neighbour[Index(f)]);
+    }
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    return tasksOf(cells);
+}
+
+std::vector<std::int32_t> Optimiser::undividedFaces() const {
     std::vector<std::int32_t> faces = faults_.undividedFaces();
     // Of thin cells over warped walls there are far too many.
-    const auto dropThin = [&] { std::erase_if(faces, [&](std::int32_t f) { return mesh_.owner[Index(f)] >= faults_.thinFrom(); }); };
-    dropThin();
-    for (int i = 0; i < sweeps && !faces.empty(); ++i) {
-        std::vector<Task> tasks = tasksOfFaces(faces);
-        const std::int64_t moves = sweep(tasks, [&](const Task& t, Worker& w) { return mendNodeTets(t, w); });
-        const auto before = static_cast<double>(faces.size());
-        faces = faults_.undividedFaces();
-        dropThin();
-        if (moves == 0 || (faces.size() > few && static_cast<double>(faces.size()) > stalled * before)) break;
+    std::erase_if(faces, [&](std::int32_t f) { return mesh_.owner[Index(f)] >= faults_.thinFrom(); });
+    return faces;
+}
+
+std::vector<std::int32_t> Optimiser::mendTets(int sweeps) {
+    std::vector<std::int32_t> faces = undividedFaces();
+    for (const bool wide : {false, true}) {
+        for (int i = 0; i < sweeps && !faces.empty(); ++i) {
+            std::vector<Task> tasks = wide ? tasksOfCellsAt(faces) : tasksOfFaces(faces);
+            const std::int64_t moves = sweep(tasks, [&](const Task& t, Worker& w) { return mendNodeTets(t, w); });
+            const auto before = static_cast<double>(faces.size());
+            faces = undividedFaces();
+            if (moves == 0 || (faces.size() > few && static_cast<double>(faces.size()) > stalled * before)) break;
+        }
     }
-    return static_cast<std::int64_t>(faces.size());
+    return faces;
+}
+
+void Optimiser::mendTetsOffWall(std::vector<std::int32_t> faces, int sweeps) {
+    std::vector<Vec3> places(front_.firstInserted());
+    for (Index v = 0; v < places.size(); ++v) places[v] = front_.wall(v);
+    leavers_.assign(front_.front.size(), 0);
+    for (const Task& t : tasksOfFaces(faces))
+        if (t.node.kind == MeshNode::wall) leavers_[Index(t.node.id)] = 1;
+    for (int i = 0; i < sweeps && !faces.empty(); ++i) {
+        std::vector<Task> tasks = tasksOfCellsAt(faces);
+        if (sweep(tasks, [&](const Task& t, Worker& w) { return mendNodeTets(t, w); }) == 0) break;
+        std::vector<std::int32_t> left;
+        std::ranges::set_intersection(faces, undividedFaces(), std::back_inserter(left));
+        faces = std::move(left);
+    }
+    leavers_.clear();
+    std::vector<std::uint8_t> moved(places.size());
+    for (Index v = 0; v < places.size(); ++v) moved[v] = !(places[v] == front_.wall(v));
+    std::vector<Task> tasks = wallTasks(moved);
+    for (int i = 0; i < backSweeps && !tasks.empty(); ++i)
+        sweep(tasks, [&](const Task& t, Worker& w) { return bringBack(t, places[Index(t.node.id)], w); });
 }
 
 std::vector<Optimiser::Task> Optimiser::tasksOff() const {

@@ -27,8 +27,12 @@ class Optimiser {
     // The nodes of poor and wrong cells, until nothing gets better. Gives how many moves were made. mayLeave: wall nodes
     // need not stay on the geometry.
     std::int64_t mend(int sweeps, bool mayLeave = false);
-    // The nodes of faces that do not divide into tetrahedra, within all other limits. Gives how many such faces are left.
-    std::int64_t mendTets(int sweeps);
+    // The nodes of faces that do not divide into tetrahedra or turn back at a corner, then all of the cells beside them, within all
+    // other limits. Gives such faces as are left.
+    std::vector<std::int32_t> mendTets(int sweeps);
+    // The same of the cells beside these faces only, where wall nodes may leave the geometry by up to a tenth of a cell. They come
+    // back as far as that undoes nothing.
+    void mendTetsOffWall(std::vector<std::int32_t> faces, int sweeps);
     // Columns of poor and wrong cells more or less bent.
     std::int64_t bend();
     // Nodes to the features that they should be on; those that get there are held to them.
@@ -49,17 +53,22 @@ class Optimiser {
     static std::vector<Task> asTasks(std::vector<std::pair<MeshNode, std::int32_t>> found);
     std::vector<Task> tasksOff() const;
     std::vector<std::vector<std::uint32_t>> colour(const std::vector<Task>& tasks) const;
+    std::vector<Task> tasksOfCellsAt(const std::vector<std::int32_t>& faces) const;
+    std::vector<std::int32_t> undividedFaces() const;
     template <class Move>
     std::int64_t sweep(std::vector<Task>& tasks, const Move& move);
     bool isFree(const MeshNode& node, const Vec3& to) const;
     bool keepsFolds(const MeshNode& node, const Vec3& to) const;
     bool isHeld(const MeshNode& wall) const;
+    bool mayLeave(const MeshNode& wall) const { return !leavers_.empty() && leavers_[static_cast<std::size_t>(wall.id)] != 0; }
     Vec3 onWall(const MeshNode& node, const Vec3& from, const Vec3& to) const;
     bool targetOf(std::int32_t vertex, Vec3& target) const;
     bool bendNode(const Task& task, Worker& worker);
     bool mendNode(const Task& task, Worker& worker);
     bool mendNodeTets(const Task& task, Worker& worker);
     double sizeAt(std::int32_t vertex) const;
+    Vec3 wayToOpen(std::int32_t vertex) const;
+    bool bringBack(const Task& task, const Vec3& to, Worker& worker);
     float* bendOf(const MeshNode& wall);
     bool fitsAt(const Task& task, Worker& worker, const Vec3& to, const Badness& before);
     bool comeTo(const Task& task, Worker& worker, const Vec3& to, const Badness& before, double shortest);
@@ -72,7 +81,7 @@ class Optimiser {
     MeshFaults& faults_;
     Front& front_;
     LayerStack& stack_;
-    bool mayLeave_ = false;
+    std::vector<std::uint8_t> leavers_; // per wall vertex: need not stay on the geometry; empty: all stay
     bool thin_;           // are there layers of a height that was asked for?
     int layers_;          // cells of the highest stack of thin layers, which share their faults; 1 where there are none
     WallGuide guide_;

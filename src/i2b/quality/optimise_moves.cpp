@@ -35,7 +35,7 @@ bool Optimiser::isFree(const MeshNode& node, const Vec3& to) const {
 
 // Wall nodes that are on the geometry stay on it, on the feature that they are held to.
 Vec3 Optimiser::onWall(const MeshNode& node, const Vec3& from, const Vec3& to) const {
-    if (node.kind != MeshNode::wall || mayLeave_ || front_.outside[Index(node.id)] != 0) return to;
+    if (node.kind != MeshNode::wall || mayLeave(node) || front_.outside[Index(node.id)] != 0) return to;
     const double h = front_.h[Index(node.id)];
     if (isHeld(node)) {
         const FeatureIndex::Line was = snapLine(guide_.index, guide_.features, guide_.snaps[Index(node.id)], from, h);

@@ -12,6 +12,9 @@ const double folded = std::cos(25 * 3.14159265358979323846 / 180); // wall faces
 constexpr double enough = 0.5;      // of the sum: what is less need not be bettered
 // Of the size of the wall's faces: so far off the geometry a node still counts as on it.
 constexpr std::array<double, 3> hair{0.009, 0.006, 0.003};
+constexpr double mostOff = 0.1;     // of h: where it must leave the geometry
+constexpr std::array<double, 3> openings{0.1, 0.05, 0.025};
+constexpr double narrow = 0.1;      // area of a wall face, as seen from its front, over the square of its size
 
 } // namespace
 
@@ -60,9 +63,52 @@ double Optimiser::sizeAt(std::int32_t vertex) const {
     return median(sizes);
 }
 
+// The way in which a wall vertex widens the narrowest of its faces, unit; none where all are wide. Out of the front's cells a face
+// has the area 1/2 sum x_i x x_(i+1), which grows most as the vertex moves across its two neighbours.
+Vec3 Optimiser::wayToOpen(std::int32_t vertex) const {
+    const FrontMesh& wall = front_.mesh;
+    const FrontMesh::VertexHandle own(vertex);
+    Vec3 way;
+    double least = narrow;
+    for (auto f : wall.vf_range(own)) {
+        Vec3 twice, out, before, next;
+        double size2 = 0;
+        for (auto he : wall.fh_range(f)) {
+            const auto a = wall.from_vertex_handle(he), b = wall.to_vertex_handle(he);
+            const Vec3 p = front_.wall(Index(a.idx())) - front_.wall(Index(vertex)), q = front_.wall(Index(b.idx())) - front_.wall(Index(vertex));
+            twice += cross(p, q), out += front_.wall(Index(a.idx())) - front_.front[Index(a.idx())];
+            size2 = std::max(size2, norm2(q - p));
+            if (b == own) before = p;
+            if (a == own) next = q;
+        }
+        out = normalized(out);
+        const double width = 0.5 * dot(twice, out) / size2;
+        if (width < least) least = width, way = normalized(cross(next - before, out));
+    }
+    return way;
+}
+
+// Back towards where it was on the geometry, as far as every face goes on dividing.
+bool Optimiser::bringBack(const Task& task, const Vec3& to, Worker& worker) {
+    worker.begin(task);
+    const Vec3 from = worker.from;
+    const TetLack now = worker.tetsAt(from);
+    const Badness limits = worker.at(from);
+    for (const double share : {1.0, 0.5, 0.25}) {
+        const Vec3 place = from + (to - from) * share;
+        const TetLack there = worker.tetsAt(place);
+        if ((there.undivided && !(there.sum < now.sum)) || !mayStand(worker.at(place), limits) || !isFree(task.node, place)) continue;
+        worker.end(place);
+        return true;
+    }
+    worker.end(from);
+    return false;
+}
+
 bool Optimiser::mendNodeTets(const Task& task, Worker& worker) {
     const std::uint8_t outside = nodes_.outside(task.node);
     if (task.node.kind == MeshNode::wall && outside != 0) return false;
+    const bool leaves = task.node.kind == MeshNode::wall && mayLeave(task.node);
     worker.begin(task);
     const Vec3 from = worker.from;
     const TetLack before = worker.tetsAt(from);
@@ -79,16 +125,26 @@ bool Optimiser::mendNodeTets(const Task& task, Worker& worker) {
         const double tets = worker.tetsAt(to, least).sum;
         if (tets < least && keepsLimits(to) && isFree(task.node, to) && keepsFolds(task.node, to)) least = tets, best = to;
     };
-    const auto tryStep = [&](const Vec3& step) { tryPlace(onWall(task.node, from, from + step)); };
+    const auto tryStep = [&](const Vec3& step) {
+        const Vec3 to = onWall(task.node, from, from + step);
+        if (!leaves || guide_.index.closest(to, mostOff * nodes_.h(task.node))) tryPlace(to);
+    };
     for (const double share : towardsMiddle) tryStep(toMiddle * share);
     if (task.node.kind == MeshNode::wall && least > enough * before.sum) {
         // Faces that wrap the rim of a sheet without thickness have no width: a hair's breadth opens them.
-        const Vec3 toFront = normalized(front_.front[Index(task.node.id)] - from);
-        const double size = sizeAt(task.node.id), most = hair.front() * size;
+        const Vec3 toFront = normalized(front_.front[Index(task.node.id)] - from), open = wayToOpen(task.node.id);
+        const double size = sizeAt(task.node.id), most = (leaves ? mostOff : hair.front()) * size;
         const bool isOff = !guide_.index.closest(from, most);
-        for (const double length : hair) {
-            const Vec3 to = from + toFront * (length * size);
-            if (isOff || guide_.index.closest(to, most)) tryPlace(to);
+        const auto tryWay = [&](const Vec3& way, const std::array<double, 3>& lengths) {
+            for (const double length : lengths) {
+                const Vec3 to = from + way * (length * size);
+                if (isOff || guide_.index.closest(to, most)) tryPlace(to);
+            }
+        };
+        for (const Vec3& way : {toFront, open}) {
+            if (way == Vec3{}) continue;
+            tryWay(way, hair);
+            if (leaves) tryWay(way, openings);
         }
     }
     if (least > enough * before.sum) {

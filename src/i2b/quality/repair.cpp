@@ -1,5 +1,7 @@
+#include <cstdlib>
 #include "i2b/quality/repair.h"
 #include "i2b/core/parallel.h"
+#include "i2b/quality/last_resort.h"
 #include "i2b/quality/mesh_faults.h"
 #include "i2b/quality/retreat.h"
 #include <algorithm>
@@ -36,7 +38,7 @@ std::vector<Vec3> wallPositions(const Front& front) {
 } // namespace
 
 RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, LayerStack& layers, double startThickness,
-                     const WallGuide& guide) {
+                     const WallGuide& guide, const DictionaryLimits& limits) {
     RepairSummary summary;
     const Rows cellFaces = buildCellFaces(mesh);
     // Layers of a height that was asked for are thin on purpose: nodes off the wall would not mend them.
@@ -96,7 +98,8 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, L
         summary.moves += optimiser.mend(mendSweeps);
         isClean();
     }
-    optimiser.mendTets(tetSweeps);
+    const std::vector<std::int32_t> undivided = optimiser.mendTets(tetSweeps);
+    if (!getenv("NOLEAVE") && !undivided.empty()) optimiser.mendTetsOffWall(facesBeyondHelp(mesh, cellFaces, undivided, limits, thinFrom), tetSweeps);
     summary.poorRemaining = poor.all;
     summary.unmended = faults.poorFaces();
     noteMoved();

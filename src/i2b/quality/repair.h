@@ -6,6 +6,7 @@
 // than a mesh that passes its checks. At the end wall nodes go on to their features and onto the geometry where no limit
 // forbids it.
 #pragma once
+#include "i2b/quality/dictionary_limits.h"
 #include "i2b/quality/optimise.h"
 #include <cstdint>
 #include <vector>
@@ -27,8 +28,9 @@ struct RepairSummary {
 };
 
 // startThickness: what buildFront() was given. Moves points of mesh, and front positions alike; columns of layers whose
-// wall position steps back lose their bend with it.
+// wall position steps back lose their bend with it. limits: what the last resort will be asked to hold; where it would not, wall nodes
+// leave the geometry a little.
 RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, LayerStack& layers, double startThickness,
-                     const WallGuide& guide);
+                     const WallGuide& guide, const DictionaryLimits& limits);
 
 } // namespace i2b
