@@ -30,7 +30,7 @@ class Optimiser {
     // The nodes of faces that do not divide into tetrahedra or turn back at a corner, then all of the cells beside them, within all
     // other limits. Gives such faces as are left.
     std::vector<std::int32_t> mendTets(int sweeps);
-    // The same of the cells beside these faces only, where wall nodes may leave the geometry by up to a tenth of a cell. They come
+    // The same of the cells beside these faces only, where theirs at the wall may leave the geometry by up to a fifth of a cell. They come
     // back as far as that undoes nothing.
     void mendTetsOffWall(std::vector<std::int32_t> faces, int sweeps);
     // Columns of poor and wrong cells more or less bent.

@@ -12,8 +12,8 @@ const double folded = std::cos(25 * 3.14159265358979323846 / 180); // wall faces
 constexpr double enough = 0.5;      // of the sum: what is less need not be bettered
 // Of the size of the wall's faces: so far off the geometry a node still counts as on it.
 constexpr std::array<double, 3> hair{0.009, 0.006, 0.003};
-constexpr double mostOff = 0.1;     // of h: where it must leave the geometry
-constexpr std::array<double, 3> openings{0.1, 0.05, 0.025};
+constexpr double mostOff = 0.2;     // of h: where it must leave the geometry
+constexpr std::array<double, 3> openings{0.1, 0.05, 0.025}; // of h
 constexpr double narrow = 0.1;      // area of a wall face, as seen from its front, over the square of its size
 
 } // namespace
@@ -107,8 +107,9 @@ bool Optimiser::bringBack(const Task& task, const Vec3& to, Worker& worker) {
 
 bool Optimiser::mendNodeTets(const Task& task, Worker& worker) {
     const std::uint8_t outside = nodes_.outside(task.node);
-    if (task.node.kind == MeshNode::wall && outside != 0) return false;
     const bool leaves = task.node.kind == MeshNode::wall && mayLeave(task.node);
+    const bool isLast = !leavers_.empty();
+    if (task.node.kind == MeshNode::wall && outside != 0 && !leaves) return false;
     worker.begin(task);
     const Vec3 from = worker.from;
     const TetLack before = worker.tetsAt(from);
@@ -123,7 +124,7 @@ bool Optimiser::mendNodeTets(const Task& task, Worker& worker) {
     double least = before.sum * (1 - leastGain);
     const auto tryPlace = [&](const Vec3& to) {
         const double tets = worker.tetsAt(to, least).sum;
-        if (tets < least && keepsLimits(to) && isFree(task.node, to) && keepsFolds(task.node, to)) least = tets, best = to;
+        if (tets < least && keepsLimits(to) && isFree(task.node, to) && (leaves || keepsFolds(task.node, to))) least = tets, best = to;
     };
     const auto tryStep = [&](const Vec3& step) {
         const Vec3 to = onWall(task.node, from, from + step);
@@ -141,7 +142,8 @@ bool Optimiser::mendNodeTets(const Task& task, Worker& worker) {
                 if (isOff || guide_.index.closest(to, most)) tryPlace(to);
             }
         };
-        for (const Vec3& way : {toFront, open}) {
+        for (const Vec3& free : {toFront, open}) {
+            const Vec3 way = withinSides(free, outside);
             if (way == Vec3{}) continue;
             tryWay(way, hair);
             if (leaves) tryWay(way, openings);
@@ -151,6 +153,13 @@ bool Optimiser::mendNodeTets(const Task& task, Worker& worker) {
         const double h = nodes_.h(task.node);
         const Vec3 down = worker.descent(before.sum, probe * h, outside, [&](const Vec3& to) { return worker.tetsAt(to).sum; });
         for (const double length : stepLengths) tryStep(down * (length * h));
+        if (isLast && !(least < before.sum * (1 - leastGain))) {
+            for (int i = 0; i < 27; ++i) {
+                const Vec3 way = withinSides({double(i % 3 - 1), double(i / 3 % 3 - 1), double(i / 9 - 1)}, outside);
+                if (way == Vec3{}) continue;
+                for (const double length : {0.1, 0.02}) tryStep(normalized(way) * (length * h));
+            }
+        }
     }
     worker.end(best);
     return !(best == from);

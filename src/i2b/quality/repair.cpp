@@ -1,4 +1,3 @@
-#include <cstdlib>
 #include "i2b/quality/repair.h"
 #include "i2b/core/parallel.h"
 #include "i2b/quality/last_resort.h"
@@ -17,7 +16,7 @@ constexpr int bendRounds = 3, thinPause = 4; // of columns bent anew, with sweep
 constexpr int thinSweeps = 24;    // of thin layers: all of a column move as one
 constexpr int wishSweeps = 2;
 constexpr int pullSweeps = 3;
-constexpr int tetSweeps = 8;
+constexpr int tetSweeps = 8, offSweeps = 16;
 
 QualityLimits strictLimits() { // a little inside those that the report judges by
     QualityLimits limits;
@@ -99,7 +98,7 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, L
         isClean();
     }
     const std::vector<std::int32_t> undivided = optimiser.mendTets(tetSweeps);
-    if (!getenv("NOLEAVE") && !undivided.empty()) optimiser.mendTetsOffWall(facesBeyondHelp(mesh, cellFaces, undivided, limits, thinFrom), tetSweeps);
+    if (!undivided.empty()) optimiser.mendTetsOffWall(facesBeyondHelp(mesh, cellFaces, undivided, limits, thinFrom), offSweeps);
     summary.poorRemaining = poor.all;
     summary.unmended = faults.poorFaces();
     noteMoved();
