@@ -91,18 +91,23 @@ class Cutter {
         }
         return true;
     }
-    // Has a face a vertex from which it divides into triangles that the centres of the cells below and above see from the right
-    // side?
+    // Do the centres of the cells below and above see the triangles around a face's centre from the right side, and has the face a
+    // vertex from which it divides into such?
     static bool divides(std::span<const Vec3> x, const ThinCell* below, const ThinCell* above) {
         const Index n = x.size();
-        const auto sees = [&](const ThinCell& cell, double side, Index base, Index i) {
-            const Vec3& from = x[base];
-            const Vec3 up = normalized(cross(x[(base + i + 1) % n] - from, x[(base + i) % n] - from)); // faces go round as seen from the wall
+        const auto sees = [](const ThinCell& cell, double side, const Vec3& from, const Vec3& up) {
             return side * dot(up, cell.centre - from) > leastHeight * cell.height;
         };
+        const auto isSeen = [&](const Vec3& from, Index i, Index next) {
+            const Vec3 up = normalized(cross(x[next % n] - from, x[i % n] - from)); // faces go round as seen from the wall
+            return (!below || sees(*below, -1, from, up)) && (!above || sees(*above, 1, from, up));
+        };
+        const Vec3 centre = measured(x).centre;
+        for (Index i = 0; i < n; ++i)
+            if (!isSeen(centre, i, i + 1)) return false;
         for (Index base = 0; base < n; ++base) {
             bool good = true;
-            for (Index i = 1; i + 1 < n && good; ++i) good = (!below || sees(*below, -1, base, i)) && (!above || sees(*above, 1, base, i));
+            for (Index i = 1; i + 1 < n && good; ++i) good = isSeen(x[base], base + i, base + i + 1);
             if (good) return true;
         }
         return false;

@@ -12,7 +12,7 @@ constexpr int patience = 2;           // sweeps, then
 constexpr int thinPatience = 4;       // the same for thin layers, however many
 constexpr std::int64_t many = 200;    // faults of which more than
 constexpr std::size_t few = 50;       // undivided faces: up to so many nothing is given up
-constexpr int backSweeps = 2;
+constexpr int backSweeps = 4;
 constexpr double stalled = 0.9;       // this share is left by a sweep are given up
 
 } // namespace
@@ -161,25 +161,18 @@ std::vector<Optimiser::Task> Optimiser::tasksOfCellsAt(const std::vector<std::in
     return tasksOf(cells);
 }
 
-std::vector<std::int32_t> Optimiser::undividedFaces() const {
+void Optimiser::mendTets(int sweeps) {
+    leavers_.clear();
     std::vector<std::int32_t> faces = faults_.undividedFaces();
-    // Of thin cells over warped walls there are far too many.
-    std::erase_if(faces, [&](std::int32_t f) { return mesh_.owner[Index(f)] >= faults_.thinFrom(); });
-    return faces;
-}
-
-std::vector<std::int32_t> Optimiser::mendTets(int sweeps) {
-    std::vector<std::int32_t> faces = undividedFaces();
     for (const bool wide : {false, true}) {
         for (int i = 0; i < sweeps && !faces.empty(); ++i) {
             std::vector<Task> tasks = wide ? tasksOfCellsAt(faces) : tasksOfFaces(faces);
             const std::int64_t moves = sweep(tasks, [&](const Task& t, Worker& w) { return mendNodeTets(t, w); });
             const auto before = static_cast<double>(faces.size());
-            faces = undividedFaces();
+            faces = faults_.undividedFaces();
             if (moves == 0 || (faces.size() > few && static_cast<double>(faces.size()) > stalled * before)) break;
         }
     }
-    return faces;
 }
 
 void Optimiser::mendTetsOffWall(std::vector<std::int32_t> faces, int sweeps) {
@@ -192,7 +185,7 @@ void Optimiser::mendTetsOffWall(std::vector<std::int32_t> faces, int sweeps) {
         std::vector<Task> tasks = tasksOfCellsAt(faces);
         if (sweep(tasks, [&](const Task& t, Worker& w) { return mendNodeTets(t, w); }) == 0) break;
         std::vector<std::int32_t> left;
-        std::ranges::set_intersection(faces, undividedFaces(), std::back_inserter(left));
+        std::ranges::set_intersection(faces, faults_.undividedFaces(), std::back_inserter(left));
         faces = std::move(left);
     }
     leavers_.clear();

@@ -28,8 +28,8 @@ class Optimiser {
     // need not stay on the geometry.
     std::int64_t mend(int sweeps, bool mayLeave = false);
     // The nodes of faces that do not divide into tetrahedra or turn back at a corner, then all of the cells beside them, within all
-    // other limits. Gives such faces as are left.
-    std::vector<std::int32_t> mendTets(int sweeps);
+    // other limits.
+    void mendTets(int sweeps);
     // The same of the cells beside these faces only, where theirs at the wall may leave the geometry by up to a fifth of a cell. They come
     // back as far as that undoes nothing.
     void mendTetsOffWall(std::vector<std::int32_t> faces, int sweeps);
@@ -54,7 +54,6 @@ class Optimiser {
     std::vector<Task> tasksOff() const;
     std::vector<std::vector<std::uint32_t>> colour(const std::vector<Task>& tasks) const;
     std::vector<Task> tasksOfCellsAt(const std::vector<std::int32_t>& faces) const;
-    std::vector<std::int32_t> undividedFaces() const;
     template <class Move>
     std::int64_t sweep(std::vector<Task>& tasks, const Move& move);
     bool isFree(const MeshNode& node, const Vec3& to) const;

@@ -134,7 +134,8 @@ bool Optimiser::mendNodeTets(const Task& task, Worker& worker) {
     if (task.node.kind == MeshNode::wall && least > enough * before.sum) {
         // Faces that wrap the rim of a sheet without thickness have no width: a hair's breadth opens them.
         const Vec3 toFront = normalized(front_.front[Index(task.node.id)] - from), open = wayToOpen(task.node.id);
-        const double size = sizeAt(task.node.id), most = (leaves ? mostOff : hair.front()) * size;
+        // No farther than onWall() takes for on the geometry, too: what is off is free to go anywhere.
+        const double size = std::min(sizeAt(task.node.id), nodes_.h(task.node)), most = (leaves ? mostOff : hair.front()) * size;
         const bool isOff = !guide_.index.closest(from, most);
         const auto tryWay = [&](const Vec3& way, const std::array<double, 3>& lengths) {
             for (const double length : lengths) {

@@ -16,7 +16,7 @@ constexpr int bendRounds = 3, thinPause = 4; // of columns bent anew, with sweep
 constexpr int thinSweeps = 24;    // of thin layers: all of a column move as one
 constexpr int wishSweeps = 2;
 constexpr int pullSweeps = 3;
-constexpr int tetSweeps = 8, offSweeps = 16;
+constexpr int tetSweeps = 8, offSweeps = 16, offRounds = 2;
 
 QualityLimits strictLimits() { // a little inside those that the report judges by
     QualityLimits limits;
@@ -97,8 +97,14 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, L
         summary.moves += optimiser.mend(mendSweeps);
         isClean();
     }
-    const std::vector<std::int32_t> undivided = optimiser.mendTets(tetSweeps);
-    if (!undivided.empty()) optimiser.mendTetsOffWall(facesBeyondHelp(mesh, cellFaces, undivided, limits, thinFrom), offSweeps);
+    optimiser.mendTets(tetSweeps);
+    for (int round = 0; round < offRounds; ++round) {
+        std::vector<std::int32_t> undivided = faults.undividedFaces();
+        std::erase_if(undivided, [&](std::int32_t f) { return mesh.owner[static_cast<std::size_t>(f)] >= thinFrom; }); // too many
+        const std::vector<std::int32_t> left = facesBeyondHelp(mesh, cellFaces, undivided, limits, thinFrom);
+        if (left.empty()) break;
+        optimiser.mendTetsOffWall(left, offSweeps);
+    }
     summary.poorRemaining = poor.all;
     summary.unmended = faults.poorFaces();
     noteMoved();
