@@ -147,7 +147,8 @@ double CellStar::tetShareOf(Index i) {
     const Vec3& own = momentsOf(face.owner, mesh_.owner[Index(face.face)]).centre;
     const bool inner = face.face < mesh_.internalFaces();
     const Vec3* nei = inner ? &momentsOf(face.neighbour, mesh_.neighbour[Index(face.face)]).centre : nullptr;
-    return tetShare(mesh_, face.face, shape.centre, shape.area, own, nei, leastTets);
+    const double share = tetShare(mesh_, face.face, shape.centre, shape.area, own, nei, leastTets);
+    return std::min(share, undividedShare + pyramidShare(shape, own, nei, limits_.pyramidVolume));
 }
 
 // f(other end) for the edges of faces that end at a point.

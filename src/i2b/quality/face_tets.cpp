@@ -41,18 +41,16 @@ class Face {
         apexes_[0] = {owner - centre, dot(normal, centre - owner)};
         if (neighbour) apexes_[count_++] = {*neighbour - centre, dot(normal, *neighbour - centre)};
         across_ = normalized((neighbour ? *neighbour : centre) - owner);
+        for (Index i = 0; i < v_.size(); ++i) reach2_ = std::max(reach2_, norm2(at(i)));
+        const double widest = (enough / widthScale + leastWidth) * reach2_;
+        widest2_ = widest * widest;
     }
     bool isFlat() const { // a triangle or a parallelogram
         if (v_.size() != 4) return v_.size() == 3;
         return norm2(at(0) - at(1) + at(2) - at(3)) <= flat2 * norm2(at(0) - at(2));
     }
-    // What thinness leaves of the area.
-    double width(const Vec3& area) const {
-        double reach2 = 0;
-        for (Index i = 0; i < v_.size(); ++i) reach2 = std::max(reach2, norm2(at(i)));
-        const double widest = (enough_ / widthScale + leastWidth) * reach2;
-        return norm2(area) < widest * widest ? widthScale * (norm(area) / reach2 - leastWidth) : enough_;
-    }
+    // What thinness leaves of an area, of the face's or one of its triangles.
+    double width(const Vec3& area) const { return norm2(area) < widest2_ ? widthScale * (norm(area) / reach2_ - leastWidth) : enough_; }
     double aroundCentre() const {
         double worst = enough_;
         Vec3 here = at(0);
@@ -95,7 +93,7 @@ class Face {
   private:
     Vec3 at(Index i) const { return points_[Index(v_[i < v_.size() ? i : i - v_.size()])] - centre_; }
     double share(const Vec3& p, const Vec3& twice) const {
-        double worst = enough_;
+        double worst = width(twice);
         for (Index k = 0; k < count_; ++k) worst = std::min(worst, apexes_[k].share(p, twice, k == 0 ? 1 : -1, enough_));
         return worst;
     }
@@ -103,7 +101,7 @@ class Face {
     std::span<const std::int32_t> v_;
     std::span<const Vec3> points_;
     Vec3 centre_, across_;
-    double enough_;
+    double enough_, reach2_ = 0, widest2_ = 0; // m^2, m^4
     std::array<Apex, 2> apexes_;
     Index count_ = 1;
 };

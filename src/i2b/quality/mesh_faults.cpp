@@ -62,7 +62,9 @@ void MeshFaults::measureFaceAt(std::int32_t face) {
             flags |= (values.weight < limits_.faceWeight ? lowWeight : 0) | (values.ratio < limits_.volumeRatio ? lowRatio : 0);
     }
     if (faceSkewness(mesh_, face, shape, own.centre, neighbour, limits_.skewness) > limits_.skewness) flags |= skew;
-    if (tetShare(mesh_, face, shape.centre, shape.area, own.centre, neighbour, undividedShare) < undividedShare) flags |= undivided;
+    if (tetShare(mesh_, face, shape.centre, shape.area, own.centre, neighbour, undividedShare) < undividedShare ||
+        pyramidShare(shape, own.centre, neighbour, limits_.pyramidVolume) < 0)
+        flags |= undivided;
     faceFlags_[Index(face)] = static_cast<std::uint8_t>(flags);
 }
 

@@ -1,5 +1,6 @@
 #include "i2b/quality/repair.h"
 #include "i2b/core/parallel.h"
+#include "i2b/quality/dictionary_measure.h"
 #include "i2b/quality/last_resort.h"
 #include "i2b/quality/mesh_faults.h"
 #include "i2b/quality/retreat.h"
@@ -18,13 +19,16 @@ constexpr int wishSweeps = 2;
 constexpr int pullSweeps = 3;
 constexpr int tetSweeps = 8, offSweeps = 16, offRounds = 2;
 
-QualityLimits strictLimits() { // a little inside those that the report judges by
+// A little inside those that the report judges by: checkMesh's, and the user's where they ask for more.
+QualityLimits strictLimits(const DictionaryLimits& asked) {
+    const DictionaryBounds bounds(asked);
     QualityLimits limits;
-    limits.nonOrthogonality = 64.5;
-    limits.skewness = 3.8;
-    limits.faceWeight = 0.055;
-    limits.volumeRatio = 0.02;
-    limits.determinant = 0.0015;
+    limits.nonOrthogonality = std::min(limits.nonOrthogonality, asked.nonOrthogonality) - 0.5;
+    limits.skewness = std::min(limits.skewness, std::min(bounds.internalSkewness, bounds.boundarySkewness)) - 0.2;
+    limits.faceWeight = 1.1 * std::max(limits.faceWeight, bounds.faceWeight);
+    limits.volumeRatio = 2 * std::max(limits.volumeRatio, bounds.volumeRatio);
+    limits.determinant = 1.5 * std::max(limits.determinant, bounds.determinant);
+    if (asked.pyramidVolume > 0) limits.pyramidVolume = 1.05 * asked.pyramidVolume;
     return limits;
 }
 
@@ -43,7 +47,7 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, L
     // Layers of a height that was asked for are thin on purpose: nodes off the wall would not mend them.
     const bool thin = !layers.asHighAsCan();
     const std::int32_t thinFrom = !thin ? mesh.cells : mesh.cells - static_cast<std::int32_t>(layers.cells());
-    MeshFaults faults(mesh, cellFaces, strictLimits(), thinFrom);
+    MeshFaults faults(mesh, cellFaces, strictLimits(limits), thinFrom);
     FaultCount poor;
     faults.poorCells(poor);
     summary.badCells = static_cast<std::int64_t>(faults.badCells().size());
