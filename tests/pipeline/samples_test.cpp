@@ -1,5 +1,6 @@
 // Proves, on every built-in geometry: what leaves generate() keeps to 65 degrees of non-orthogonality and a skewness of 4,
-// no cell is wrong, and plain checkMesh has nothing to say.
+// no cell is wrong, no face breaks a limit of the mesh quality dictionary, and plain checkMesh has nothing to say; limits that the
+// user sets are worked for.
 #include "i2b/geometry/write_stl.h"
 #include "i2b/program/generate.h"
 #include "i2b/samples/sample.h"
@@ -24,24 +25,32 @@ const SampleCase sampleCases[] = {{"box", 0.1, false},      {"sphere", 0.06, fal
 
 class Samples : public testing::TestWithParam<SampleCase> {};
 
-TEST_P(Samples, KeepToTheLimits) {
-    const SampleCase& c = GetParam();
+MeshResult meshOf(const SampleCase& c, const DictionaryLimits& limits = {}) {
     const std::filesystem::path file = std::filesystem::temp_directory_path() / ("i2b_sample_" + std::to_string(getpid()) + "_" + c.name + ".stl");
     writeStl(makeSample(c.name), file.string(), StlFormat::binary);
     Options options;
     options.geometry.files = {file.string()};
     options.size.surface = c.h;
     options.size.max = 8 * c.h;
+    options.quality = limits;
     if (c.inside) options.domain.seeds = {{"", *sampleSeed(c.name, "inside")}};
     Context context;
-    const MeshResult result = generate(options, context);
+    MeshResult result = generate(options, context);
     std::filesystem::remove(file);
+    return result;
+}
+
+TEST_P(Samples, KeepToTheLimits) {
+    const MeshResult result = meshOf(GetParam());
     const QualityReport& q = result.report.quality.value();
     EXPECT_EQ(result.mesh.validate(), "");
     EXPECT_LE(q.maxNonOrthogonality, 65);
     EXPECT_LE(q.maxSkewness, 4);
     EXPECT_EQ(q.negativeVolumeCells + q.wrongOrientedFaces + q.openCells, 0);
     EXPECT_EQ(plainFailures(q), "");
+    for (const DictionaryCheck& check : q.dictionary) {
+        if (check.asked) { EXPECT_EQ(check.faces, 0) << check.key; }
+    }
     EXPECT_GT(q.cells, 500);
 }
 
@@ -50,6 +59,15 @@ INSTANTIATE_TEST_SUITE_P(BuiltIn, Samples, testing::ValuesIn(sampleCases), [](co
     std::erase(name, '-');
     return name;
 });
+
+TEST(SampleLimits, OfTheUserAreWorkedFor) {
+    DictionaryLimits limits;
+    EXPECT_GT(meshOf({"missile", 0.05, false}, limits).report.quality->maxNonOrthogonality, 52);
+    limits.nonOrthogonality = 52;
+    const QualityReport q = meshOf({"missile", 0.05, false}, limits).report.quality.value();
+    EXPECT_LE(q.maxNonOrthogonality, 52);
+    EXPECT_EQ(q.dictionaryFaces, 0);
+}
 
 // None may be added without a case here.
 TEST(SampleTable, IsComplete) {

@@ -1,5 +1,5 @@
 // Proves: where faces are beyond the limits, dividing and uniting leaves a valid mesh with fewer of them, nothing worse and the
-// same points; a mesh without any stays as it is; layers of asked heights are not united; the same on any number of threads.
+// same points; those that nothing would help are told without a change; a mesh without any stays as it is; layers of asked heights are not united; the same on any number of threads.
 #include "i2b/quality/last_resort.h"
 #include "i2b/quality/mesh_faults.h"
 #include "i2b/quality/quality_report.h"
@@ -50,6 +50,22 @@ TEST_P(ShakenBlocks, HaveFewerFacesBeyondTheLimits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, ShakenBlocks, testing::Range(1u, 9u));
+
+TEST_P(ShakenBlocks, FacesBeyondHelpAreThoseThatStayPoor) {
+    PolyMesh mesh = shaken(GetParam());
+    const Rows cellFaces = buildCellFaces(mesh);
+    const std::vector<std::int32_t> poor = MeshFaults(mesh, cellFaces, {}).undividedFaces();
+    const std::uint64_t sum = mesh.checksum();
+    const std::vector<std::int32_t> left = facesBeyondHelp(mesh, cellFaces, poor, {});
+    EXPECT_EQ(mesh.checksum(), sum);
+    EXPECT_TRUE(std::ranges::includes(poor, left));
+    EXPECT_LT(left.size(), poor.size());
+    // Limits that nothing breaks leave none.
+    DictionaryLimits none;
+    none.nonOrthogonality = 180, none.pyramidVolume = none.tetQuality = -1e30, none.concavity = 180, none.internalSkewness = none.boundarySkewness = -1;
+    none.faceWeight = none.volumeRatio = none.twist = none.determinant = -1;
+    EXPECT_TRUE(facesBeyondHelp(mesh, cellFaces, poor, none).empty());
+}
 
 TEST(LastResort, LeavesGoodMeshesAlone) {
     const PolyMesh before = shaken(1, 0.05);
