@@ -67,6 +67,24 @@ TEST(MeshFaults, ThinCellsMayBeThin) {
     EXPECT_EQ(faults.all, expected);
 }
 
+// What only a few thin cells have does count; what many have does not.
+TEST(MeshFaults, FewFaultsOfThinCellsCount) {
+    std::mt19937 random(3);
+    PolyMesh few = test::shakenBlock(8, 0.05, random);
+    few.points[364] += Vec3{0.97, 0.2, 0.1}; // amid the block: 9 by 9 by 9 points
+    const PolyMesh many = test::shakenBlock(8, 0.55, random);
+    QualityLimits limits;
+    limits.faceWeight = 0.3;
+    for (const bool isFew : {true, false}) {
+        const PolyMesh& mesh = isFew ? few : many;
+        const Rows cellFaces = buildCellFaces(mesh);
+        const MeshFaults all(mesh, cellFaces, limits), thin(mesh, cellFaces, limits, 0);
+        ASSERT_FALSE(all.undividedFaces().empty());
+        EXPECT_EQ(thin.countsThinWeights(), isFew);
+        EXPECT_EQ(thin.undividedFaces(), isFew ? all.undividedFaces() : std::vector<std::int32_t>());
+    }
+}
+
 // Measured again where points moved, or all anew: the same, whichever cells of the moved points are named.
 TEST(MeshFaults, UpdateIsAsGoodAsAFreshLook) {
     std::size_t bad = 0;

@@ -136,7 +136,7 @@ void CellStar::judgeFace(Index i, Badness& out) {
     const double limit = 1 - std::cos(limits_.nonOrthogonality * std::numbers::pi / 180);
     add(out, (1 - values.ortho) / limit);
     add(out, std::min(wrong, faceSkewness(mesh_, face.face, shape, own.centre, &nei.centre, counts * limits_.skewness) / limits_.skewness));
-    if (owner >= thinFrom_ && neighbour >= thinFrom_) return;
+    if (!thinWeights_ && owner >= thinFrom_ && neighbour >= thinFrom_) return;
     add(out, std::min(wrong, limits_.faceWeight / std::max(values.weight, 1e-300)));
     add(out, std::min(wrong, limits_.volumeRatio / std::max(values.ratio, 1e-300)));
 }

@@ -23,8 +23,9 @@ struct TetLack {
 class CellStar {
   public:
     // Keeps references. moments: of all cells, as they are now; those of the star's own cells are worked out anew.
-    CellStar(const PolyMesh& mesh, const Rows& cellFaces, const CellMoments* moments, const QualityLimits& limits, std::int32_t thinFrom)
-        : mesh_(mesh), cellFaces_(cellFaces), moments_(moments), limits_(limits), thinFrom_(thinFrom) {}
+    CellStar(const PolyMesh& mesh, const Rows& cellFaces, const CellMoments* moments, const QualityLimits& limits, std::int32_t thinFrom,
+             bool thinWeights = false)
+        : mesh_(mesh), cellFaces_(cellFaces), moments_(moments), limits_(limits), thinFrom_(thinFrom), thinWeights_(thinWeights) {}
 
     // All cells that use one of the points (sorted): ascending. from: one that does for each group of points that hang together.
     const std::vector<std::int32_t>& cellsAt(const std::vector<std::int32_t>& points, const std::vector<std::int32_t>& from);
@@ -62,6 +63,7 @@ class CellStar {
     const CellMoments* moments_;
     QualityLimits limits_;
     std::int32_t thinFrom_;
+    bool thinWeights_; // do weights and volume ratios among thin cells count?
     std::vector<std::int32_t> points_, cells_;
     std::vector<Face> faces_;                          // ascending
     std::vector<std::uint32_t> faceOf_, firstFace_;    // the faces of each cell, places in faces_

@@ -12,6 +12,7 @@ namespace {
 
 using Index = std::size_t;
 constexpr double flat = 1e-9; // a pyramid below this part of its cell's size counts as wrong
+constexpr double mostThin = 0.02; // faces for each thin cell that may have a fault of one kind for it to count
 
 bool isBad(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::span<const FaceShape> shapes, std::int32_t cell,
            const CellMoments& moments) {
@@ -36,6 +37,21 @@ MeshFaults::MeshFaults(const PolyMesh& mesh, const Rows& cellFaces, const Qualit
         for (Index c = begin; c < end; ++c) measureCellAt(static_cast<std::int32_t>(c), shapes);
     });
     parallelFor(faceFlags_.size(), [&](Index f) { measureFaceAt(static_cast<std::int32_t>(f)); });
+    lookAtThin();
+}
+
+// What only some of the thin cells have can be mended; what many have goes with their height.
+void MeshFaults::lookAtThin() {
+    if (thinFrom_ >= mesh_.cells) return;
+    std::array<Index, 2> found{};
+    for (Index f = 0; f < faceFlags_.size(); ++f) {
+        if (mesh_.owner[f] < thinFrom_) continue; // the other side is the higher number
+        found[0] += (faceFlags_[f] & (lowWeight | lowRatio)) != 0;
+        found[1] += (faceFlags_[f] & undivided) != 0;
+    }
+    const double most = mostThin * (mesh_.cells - thinFrom_);
+    if (static_cast<double>(found[0]) > most) thinFlags_ &= ~(lowWeight | lowRatio);
+    if (static_cast<double>(found[1]) > most) thinFlags_ &= ~undivided;
 }
 
 void MeshFaults::measureCellAt(std::int32_t cell, CellFaceShapes& faceShapes) {
@@ -57,9 +73,8 @@ void MeshFaults::measureFaceAt(std::int32_t face) {
         const CellMoments& nei = moments_[Index(mesh_.neighbour[Index(face)])];
         const PairValues values = pairValues(shape, own, nei);
         neighbour = &nei.centre;
-        flags = values.ortho < severeCosine_ ? nonOrthogonal : 0;
-        if (mesh_.owner[Index(face)] < thinFrom_) // the other side is the higher number
-            flags |= (values.weight < limits_.faceWeight ? lowWeight : 0) | (values.ratio < limits_.volumeRatio ? lowRatio : 0);
+        flags = (values.ortho < severeCosine_ ? nonOrthogonal : 0) | (values.weight < limits_.faceWeight ? lowWeight : 0) |
+                (values.ratio < limits_.volumeRatio ? lowRatio : 0);
     }
     if (faceSkewness(mesh_, face, shape, own.centre, neighbour, limits_.skewness) > limits_.skewness) flags |= skew;
     if (tetShare(mesh_, face, shape.centre, shape.area, own.centre, neighbour, undividedShare) < undividedShare ||
@@ -130,10 +145,11 @@ std::vector<std::int32_t> MeshFaults::poorCells(FaultCount& faults, bool severeO
     Index determinants = 0;
     std::vector<std::int32_t> cells;
     for (Index f = 0; f < faceFlags_.size(); ++f) {
-        if ((faceFlags_[f] & ~undivided) == 0) continue;
+        const int flags = flagsOf(f) & ~undivided;
+        if (flags == 0) continue;
         bool named = false;
         for (Index k = 0; k < ofFaces.size(); ++k)
-            if (faceFlags_[f] & ofFaces[k]) named |= found[k]++ < limit && (k < severeKinds || !severeOnly);
+            if (flags & ofFaces[k]) named |= found[k]++ < limit && (k < severeKinds || !severeOnly);
         if (!named) continue;
         cells.push_back(mesh_.owner[f]);
         if (f < mesh_.neighbour.size()) cells.push_back(mesh_.neighbour[f]);
@@ -151,7 +167,7 @@ std::vector<std::int32_t> MeshFaults::poorCells(FaultCount& faults, bool severeO
 std::vector<std::int32_t> MeshFaults::undividedFaces() const {
     std::vector<std::int32_t> faces;
     for (Index f = 0; f < faceFlags_.size(); ++f)
-        if (faceFlags_[f] & undivided) faces.push_back(static_cast<std::int32_t>(f));
+        if (flagsOf(f) & undivided) faces.push_back(static_cast<std::int32_t>(f));
     return faces;
 }
 
@@ -160,9 +176,7 @@ std::vector<std::int32_t> MeshFaults::poorFaces() const {
     for (Index f = 0; f < faceFlags_.size(); ++f) {
         const bool isInner = f < mesh_.neighbour.size();
         const std::uint8_t cells = cellFlags_[Index(mesh_.owner[f])] | (isInner ? cellFlags_[Index(mesh_.neighbour[f])] : 0);
-        // Of faces among thin cells over warped walls far too many do not divide.
-        const int counting = mesh_.owner[f] < thinFrom_ ? 0xff : nonOrthogonal | skew;
-        if ((faceFlags_[f] & counting) != 0 || cells != 0) faces.push_back(static_cast<std::int32_t>(f));
+        if (flagsOf(f) != 0 || cells != 0) faces.push_back(static_cast<std::int32_t>(f));
     }
     return faces;
 }

@@ -17,7 +17,8 @@ struct FaultCount {
 class MeshFaults {
   public:
     // Keeps references. limits: those of orthogonality, skewness, weight, volume ratio and determinant count. Cells from
-    // thinFrom on may be as thin as they are: their determinants do not count, nor weights and volume ratios among them.
+    // thinFrom on may be as thin as they are: their determinants do not count, nor weights and volume ratios among them, nor faces
+    // that do not divide, unless these are few.
     MeshFaults(const PolyMesh& mesh, const Rows& cellFaces, const QualityLimits& limits,
                std::int32_t thinFrom = std::numeric_limits<std::int32_t>::max());
 
@@ -27,6 +28,7 @@ class MeshFaults {
     const CellMoments* moments() const { return moments_.data(); } // of all cells
     const QualityLimits& limits() const { return limits_; }
     std::int32_t thinFrom() const { return thinFrom_; }
+    bool countsThinWeights() const { return (thinFlags_ & lowWeight) != 0; }
 
     // Cells without a positive volume, or with a face pyramid that points the wrong way or is next to nothing.
     std::vector<std::int32_t> badCells() const;
@@ -35,8 +37,7 @@ class MeshFaults {
     std::vector<std::int32_t> poorCells(FaultCount& faults, bool severeOnly = false) const;
     // Faces that do not divide into tetrahedra (face_tets.h); these count nowhere else.
     std::vector<std::int32_t> undividedFaces() const;
-    // All faces with any fault, those of cells with one among them; of faces among thin cells those over the limits of
-    // non-orthogonality and skewness only.
+    // All faces with any fault that counts, those of cells with one among them.
     std::vector<std::int32_t> poorFaces() const;
 
   private:
@@ -46,6 +47,9 @@ class MeshFaults {
     void measureFaceAt(std::int32_t face);
     std::vector<std::int32_t> cellsAround(const std::vector<std::int32_t>& seeds);
     bool hasMoved(std::int32_t face) const;
+    void lookAtThin();
+    // Those that count.
+    int flagsOf(std::size_t face) const { return faceFlags_[face] & (mesh_.owner[face] < thinFrom_ ? 0xff : thinFlags_); }
 
     const PolyMesh& mesh_;
     const Rows& cellFaces_;
@@ -54,6 +58,7 @@ class MeshFaults {
     double severeCosine_;
     RawVector<CellMoments> moments_;
     std::vector<std::uint8_t> cellFlags_, faceFlags_;
+    int thinFlags_ = 0xff; // of faces among thin cells: what counts
     std::vector<std::uint8_t> moved_, changed_; // per point, per cell; clear between updates
 };
 

@@ -20,7 +20,8 @@ inline bool mayStand(const Badness& now, const Badness& before) {
 }
 
 struct Optimiser::Worker {
-    Worker(Optimiser& o) : optimiser(o), star(o.mesh_, o.cellFaces_, o.faults_.moments(), o.faults_.limits(), o.faults_.thinFrom()) {}
+    Worker(Optimiser& o) : optimiser(o), star(o.mesh_, o.cellFaces_, o.faults_.moments(), o.faults_.limits(), o.faults_.thinFrom(),
+             o.faults_.countsThinWeights()) {}
 
     void begin(const Task& t) {
         hang(t);
