@@ -226,7 +226,9 @@ std::vector<std::int32_t> facesBeyondHelp(const PolyMesh& mesh, const Rows& cell
 LastResort changePoorPlaces(PolyMesh& mesh, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits, std::int32_t thinFrom) {
     LastResort summary;
     std::vector<std::int32_t> faces, concave;
-    if (DictionaryBounds(limits).concavityAsked) concave = concaveFaces(mesh, limits.concavity);
+    // MeshFaults names those that the default limit forbids, but for thin cells that have many.
+    const bool areNamed = limits.concavity >= DictionaryLimits().concavity && thinFrom >= mesh.cells;
+    if (DictionaryBounds(limits).concavityAsked && !areNamed) concave = concaveFaces(mesh, limits.concavity);
     std::ranges::set_union(poorFaces, concave, std::back_inserter(faces));
     if (faces.empty()) return summary;
     const Rows cellFaces = buildCellFaces(mesh);

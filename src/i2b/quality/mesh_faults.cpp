@@ -4,7 +4,9 @@
 #include "i2b/quality/measures.h"
 #include "i2b/quality/tally.h"
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 namespace i2b {
@@ -23,6 +25,21 @@ bool isBad(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::span<
         if (!(sign * dot(shapes[i].area, arm) > flat * norm(shapes[i].area) * norm(arm))) return true;
     }
     return false;
+}
+
+// f(place) for those that are not 0, ascending. Nearly all are 0 and this is asked again and again: eight are looked at as one.
+template <class F>
+void forFlagged(const std::vector<std::uint8_t>& flags, const F& f) {
+    Index i = 0;
+    for (; i + 8 <= flags.size(); i += 8) {
+        std::uint64_t eight = 0;
+        std::memcpy(&eight, &flags[i], 8);
+        if (eight == 0) continue;
+        for (Index k = i; k < i + 8; ++k)
+            if (flags[k] != 0) f(k);
+    }
+    for (; i < flags.size(); ++i)
+        if (flags[i] != 0) f(i);
 }
 
 } // namespace
@@ -44,11 +61,11 @@ MeshFaults::MeshFaults(const PolyMesh& mesh, const Rows& cellFaces, const Qualit
 void MeshFaults::lookAtThin() {
     if (thinFrom_ >= mesh_.cells) return;
     std::array<Index, 2> found{};
-    for (Index f = 0; f < faceFlags_.size(); ++f) {
-        if (mesh_.owner[f] < thinFrom_) continue; // the other side is the higher number
+    forFlagged(faceFlags_, [&](Index f) {
+        if (mesh_.owner[f] < thinFrom_) return; // the other side is the higher number
         found[0] += (faceFlags_[f] & (lowWeight | lowRatio)) != 0;
         found[1] += (faceFlags_[f] & undivided) != 0;
-    }
+    });
     const double most = mostThin * (mesh_.cells - thinFrom_);
     if (static_cast<double>(found[0]) > most) thinFlags_ &= ~(lowWeight | lowRatio);
     if (static_cast<double>(found[1]) > most) thinFlags_ &= ~undivided;
@@ -131,8 +148,9 @@ void MeshFaults::update(const std::vector<std::int32_t>& movedPoints, const std:
 
 std::vector<std::int32_t> MeshFaults::badCells() const {
     std::vector<std::int32_t> cells;
-    for (Index c = 0; c < cellFlags_.size(); ++c)
+    forFlagged(cellFlags_, [&](Index c) {
         if (cellFlags_[c] & bad) cells.push_back(static_cast<std::int32_t>(c));
+    });
     return cells;
 }
 
@@ -144,18 +162,18 @@ std::vector<std::int32_t> MeshFaults::poorCells(FaultCount& faults, bool severeO
     std::array<Index, 4> found{};
     Index determinants = 0;
     std::vector<std::int32_t> cells;
-    for (Index f = 0; f < faceFlags_.size(); ++f) {
+    forFlagged(faceFlags_, [&](Index f) {
         const int flags = flagsOf(f) & ~undivided;
-        if (flags == 0) continue;
         bool named = false;
         for (Index k = 0; k < ofFaces.size(); ++k)
             if (flags & ofFaces[k]) named |= found[k]++ < limit && (k < severeKinds || !severeOnly);
-        if (!named) continue;
+        if (!named) return;
         cells.push_back(mesh_.owner[f]);
         if (f < mesh_.neighbour.size()) cells.push_back(mesh_.neighbour[f]);
-    }
-    for (Index c = 0; c < cellFlags_.size(); ++c)
+    });
+    forFlagged(cellFlags_, [&](Index c) {
         if ((cellFlags_[c] & lowDeterminant) && determinants++ < limit && !severeOnly) cells.push_back(static_cast<std::int32_t>(c));
+    });
     faults.severe = static_cast<std::int64_t>(found[0] + found[1]);
     faults.all = static_cast<std::int64_t>(determinants);
     for (const Index n : found) faults.all += static_cast<std::int64_t>(n);
@@ -166,18 +184,23 @@ std::vector<std::int32_t> MeshFaults::poorCells(FaultCount& faults, bool severeO
 
 std::vector<std::int32_t> MeshFaults::undividedFaces() const {
     std::vector<std::int32_t> faces;
-    for (Index f = 0; f < faceFlags_.size(); ++f)
+    forFlagged(faceFlags_, [&](Index f) {
         if (flagsOf(f) & undivided) faces.push_back(static_cast<std::int32_t>(f));
+    });
     return faces;
 }
 
 std::vector<std::int32_t> MeshFaults::poorFaces() const {
     std::vector<std::int32_t> faces;
-    for (Index f = 0; f < faceFlags_.size(); ++f) {
-        const bool isInner = f < mesh_.neighbour.size();
-        const std::uint8_t cells = cellFlags_[Index(mesh_.owner[f])] | (isInner ? cellFlags_[Index(mesh_.neighbour[f])] : 0);
-        if (flagsOf(f) != 0 || cells != 0) faces.push_back(static_cast<std::int32_t>(f));
-    }
+    forFlagged(faceFlags_, [&](Index f) {
+        if (flagsOf(f) != 0) faces.push_back(static_cast<std::int32_t>(f));
+    });
+    forFlagged(cellFlags_, [&](Index c) {
+        const auto row = cellFaces_[static_cast<std::int32_t>(c)];
+        faces.insert(faces.end(), row.begin(), row.end());
+    });
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
     return faces;
 }
 
