@@ -2,6 +2,7 @@
 #include "i2b/core/parallel.h"
 #include "i2b/quality/optimise_worker.h"
 #include <algorithm>
+#include <bit>
 
 namespace i2b {
 namespace {
@@ -63,10 +64,34 @@ std::int64_t Optimiser::bend() {
     return sweep(tasks, [&](const Task& t, Worker& w) { return bendNode(t, w); });
 }
 
+namespace {
+
+// Some of the cells of a mesh, each with its place among them in ascending order: a bit a cell.
+class CellRanks {
+  public:
+    explicit CellRanks(std::int32_t cells) : words_(Index(cells) / 64 + 1, 0) {}
+    void add(std::int32_t cell) { words_[Index(cell) / 64] |= std::uint64_t(1) << (cell % 64); }
+    std::size_t count() { // from here on rank() may be asked
+        before_.resize(words_.size());
+        std::uint32_t sum = 0;
+        for (Index w = 0; w < words_.size(); ++w) before_[w] = sum, sum += static_cast<std::uint32_t>(std::popcount(words_[w]));
+        return sum;
+    }
+    std::size_t rank(std::int32_t cell) const {
+        const std::uint64_t lower = (std::uint64_t(1) << (cell % 64)) - 1;
+        return before_[Index(cell) / 64] + static_cast<Index>(std::popcount(words_[Index(cell) / 64] & lower));
+    }
+
+  private:
+    std::vector<std::uint64_t> words_;
+    std::vector<std::uint32_t> before_; // set bits before each word
+};
+
+} // namespace
+
 // Groups of tasks that may go at once: no cell that one changes is read by another. Those beyond 64 colours wait for
 // the next sweep.
 std::vector<std::vector<std::uint32_t>> Optimiser::colour(const std::vector<Task>& tasks) const {
-    std::vector<std::int32_t> cells;
     std::vector<std::vector<std::int32_t>> reads(tasks.size());
     parallelFor(tasks.size(), [&](Index t) {
         for (const std::int32_t c : tasks[t].cells) {
@@ -78,21 +103,20 @@ std::vector<std::vector<std::uint32_t>> Optimiser::colour(const std::vector<Task
         std::sort(reads[t].begin(), reads[t].end());
         reads[t].erase(std::unique(reads[t].begin(), reads[t].end()), reads[t].end());
     }, 16);
-    for (const auto& r : reads) cells.insert(cells.end(), r.begin(), r.end());
-    std::sort(cells.begin(), cells.end());
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    CellRanks ranks(mesh_.cells);
+    for (const auto& r : reads)
+        for (const std::int32_t c : r) ranks.add(c);
     struct Masks { std::uint64_t read = 0, changed = 0; };
-    std::vector<Masks> masks(cells.size());
-    const auto masksOf = [&](std::int32_t c) -> Masks& { return masks[static_cast<Index>(std::lower_bound(cells.begin(), cells.end(), c) - cells.begin())]; };
+    std::vector<Masks> masks(ranks.count());
     std::vector<std::vector<std::uint32_t>> groups;
     for (Index t = 0; t < tasks.size(); ++t) {
         std::uint64_t taken = 0;
-        for (const std::int32_t c : tasks[t].cells) taken |= masksOf(c).read;
-        for (const std::int32_t c : reads[t]) taken |= masksOf(c).changed;
+        for (const std::int32_t c : tasks[t].cells) taken |= masks[ranks.rank(c)].read;
+        for (const std::int32_t c : reads[t]) taken |= masks[ranks.rank(c)].changed;
         const int free = std::countr_one(taken);
         if (free == 64) continue;
-        for (const std::int32_t c : tasks[t].cells) masksOf(c).changed |= std::uint64_t(1) << free;
-        for (const std::int32_t c : reads[t]) masksOf(c).read |= std::uint64_t(1) << free;
+        for (const std::int32_t c : tasks[t].cells) masks[ranks.rank(c)].changed |= std::uint64_t(1) << free;
+        for (const std::int32_t c : reads[t]) masks[ranks.rank(c)].read |= std::uint64_t(1) << free;
         if (groups.size() <= Index(free)) groups.resize(Index(free) + 1);
         groups[Index(free)].push_back(static_cast<std::uint32_t>(t));
     }
