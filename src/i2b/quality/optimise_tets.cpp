@@ -97,7 +97,7 @@ bool Optimiser::bringBack(const Task& task, const Vec3& to, Worker& worker) {
     for (const double share : {1.0, 0.5, 0.25}) {
         const Vec3 place = from + (to - from) * share;
         const TetLack there = worker.tetsAt(place);
-        if ((there.undivided && !(there.sum < now.sum)) || !mayStand(worker.at(place), limits) || !isFree(task.node, place)) continue;
+        if ((there.undivided && !(now.undivided && there.sum < now.sum)) || !mayStand(worker.at(place), limits) || !isFree(task.node, place)) continue;
         worker.end(place);
         return true;
     }

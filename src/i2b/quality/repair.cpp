@@ -23,8 +23,8 @@ constexpr int tetSweeps = 8, offSweeps = 16, offRounds = 2;
 QualityLimits strictLimits(const DictionaryLimits& asked) {
     const DictionaryBounds bounds(asked);
     QualityLimits limits;
-    limits.nonOrthogonality = std::min(limits.nonOrthogonality, asked.nonOrthogonality) - 0.5;
-    limits.skewness = std::min(limits.skewness, std::min(bounds.internalSkewness, bounds.boundarySkewness)) - 0.2;
+    limits.nonOrthogonality = 0.9923 * std::min(limits.nonOrthogonality, asked.nonOrthogonality);
+    limits.skewness = 0.95 * std::min({limits.skewness, bounds.internalSkewness, bounds.boundarySkewness});
     limits.faceWeight = 1.1 * std::max(limits.faceWeight, bounds.faceWeight);
     limits.volumeRatio = 2 * std::max(limits.volumeRatio, bounds.volumeRatio);
     limits.determinant = 1.5 * std::max(limits.determinant, bounds.determinant);
@@ -105,6 +105,7 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, L
     for (int round = 0; round < offRounds; ++round) {
         std::vector<std::int32_t> undivided = faults.undividedFaces();
         std::erase_if(undivided, [&](std::int32_t f) { return mesh.owner[static_cast<std::size_t>(f)] >= thinFrom; }); // too many
+        if (undivided.empty()) break;
         const std::vector<std::int32_t> left = facesBeyondHelp(mesh, cellFaces, undivided, limits, thinFrom);
         if (left.empty()) break;
         optimiser.mendTetsOffWall(left, offSweeps);
