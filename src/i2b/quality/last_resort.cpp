@@ -213,9 +213,9 @@ std::vector<std::int32_t> facesBeyondHelp(const PolyMesh& mesh, const Rows& cell
     std::vector<std::uint8_t> left(poorFaces.size(), 0);
     parallelFor(left.size(), [&](Index i) {
         const std::int32_t face = poorFaces[i], own = edits.of(mesh.owner[Index(face)]);
-        const std::int32_t other = edits.across(face, own) < 0 ? own : edits.across(face, own);
-        const bool within = own == other && face < mesh.internalFaces();
-        left[i] = !within && judge(edits.around({std::min(own, other), std::max(own, other)}), limits).faces > 0;
+        const std::int32_t across = edits.across(face, own), other = across < 0 ? own : across;
+        const bool isGone = across == own; // inside a merged cell
+        left[i] = !isGone && judge(edits.around({std::min(own, other), std::max(own, other)}), limits).faces > 0;
     }, 1);
     std::vector<std::int32_t> faces;
     for (Index i = 0; i < left.size(); ++i)

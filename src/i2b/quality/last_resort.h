@@ -23,8 +23,8 @@ struct LastResort {
     std::vector<std::int32_t> morePieces; // cells of before, ascending: one for each face that walls have got there
 };
 
-// poorFaces: ascending, as MeshFaults names them; what lies around them is looked at. Cells from thinFrom on are layers of a height that was asked for, and
-// merge only with cells of the core.
+// poorFaces: ascending, as MeshFaults names them; what lies around them is looked at. Cells from thinFrom on are layers of a height
+// that was asked for, and merge only with cells of the core.
 LastResort changePoorPlaces(PolyMesh& mesh, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits,
                             std::int32_t thinFrom = std::numeric_limits<std::int32_t>::max());
 

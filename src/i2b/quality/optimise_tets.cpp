@@ -154,6 +154,7 @@ bool Optimiser::mendNodeTets(const Task& task, Worker& worker) {
         const double h = nodes_.h(task.node);
         const Vec3 down = worker.descent(before.sum, probe * h, outside, [&](const Vec3& to) { return worker.tetsAt(to).sum; });
         for (const double length : stepLengths) tryStep(down * (length * h));
+        // Few faces come as far: their nodes try all ways round before they are given up.
         if (isLast && !(least < before.sum * (1 - leastGain))) {
             for (int i = 0; i < 27; ++i) {
                 const Vec3 way = withinSides({double(i % 3 - 1), double(i / 3 % 3 - 1), double(i / 9 - 1)}, outside);

@@ -104,7 +104,7 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, L
     optimiser.mendTets(tetSweeps);
     for (int round = 0; round < offRounds; ++round) {
         std::vector<std::int32_t> undivided = faults.undividedFaces();
-        std::erase_if(undivided, [&](std::int32_t f) { return mesh.owner[static_cast<std::size_t>(f)] >= thinFrom; }); // too many
+        std::erase_if(undivided, [&](std::int32_t f) { return mesh.owner[static_cast<std::size_t>(f)] >= thinFrom; }); // no wall leaves the geometry for thin layers
         if (undivided.empty()) break;
         const std::vector<std::int32_t> left = facesBeyondHelp(mesh, cellFaces, undivided, limits, thinFrom);
         if (left.empty()) break;
