@@ -197,7 +197,7 @@ bool minimiseEnergy(const Band& band, const SurfaceIndex& index, const FeatureIn
         context.checkCancelled();
         if (options.budget.isOver()) return false;
         for (const std::vector<std::uint32_t>& group : nodes) {
-            parallelChunks(group.size(), 128, [&](std::size_t begin, std::size_t end, std::size_t) {
+            parallelChunks(group.size(), 64, [&](std::size_t begin, std::size_t end, std::size_t) {
                 LocalCorners corners;
                 for (std::size_t i = begin; i < end; ++i) {
                     const std::size_t n = group[i];
