@@ -1,6 +1,5 @@
 #include "i2b/program/generate.h"
 #include "i2b/carve/carve.h"
-#include "i2b/core/beside.h"
 #include "i2b/core/checksum.h"
 #include "i2b/core/error.h"
 #include "i2b/core/memory.h"
@@ -56,8 +55,9 @@ void judge(MeshResult& out, const FeatureGraph& features, const FitSummary& fitt
     out.report.checksum = sum.hex();
 }
 
-// The geometry, with nothing made of it yet.
-std::unique_ptr<GridResult> readGeometry(const Options& options, Context& context) {
+} // namespace
+
+std::unique_ptr<GridResult> generateGrid(const Options& options, Context& context, Road road) {
     auto out = std::make_unique<GridResult>();
     GridResult& r = *out;
     r.surface = stage(
@@ -68,17 +68,12 @@ std::unique_ptr<GridResult> readGeometry(const Options& options, Context& contex
             return readSurface(g.files, g.scale, r.notes);
         },
         [](const Surface& s) { return s.triangles.size(); });
-    return out;
-}
-
-// All that follows from the geometry, up to carving.
-void makeGrid(GridResult& r, const Options& options, Context& context, Road road) {
-    Beside<std::unique_ptr<SurfaceIndex>> index([&] { return std::make_unique<SurfaceIndex>(r.surface); });
     r.field = stage(
         context, "size", [&] { return makeSizeField(r.surface, options.size, options.domain); },
         [](const SizeField& f) { return f.lattice.maxLevel + 1; });
     r.index = stage(
-        context, "index", [&] { return index.get(); }, [&](const auto&) { return r.surface.triangles.size(); });
+        context, "index", [&] { return std::make_unique<SurfaceIndex>(r.surface); },
+        [&](const auto&) { return r.surface.triangles.size(); });
     const LayerPlan plan = planOf(requestOf(options.layers), options.layers.unit);
     const int layerCells = plan.count + (plan.fills() ? 0 : 1); // with the one over them
     refuseTooLarge(r.surface, r.field, layerCells, road != Road::mesh);
@@ -106,34 +101,25 @@ void makeGrid(GridResult& r, const Options& options, Context& context, Road road
             return regions;
         },
         [](const Regions& regions) { return regions.table.size(); });
-    if (road == Road::regions) return;
+    if (road == Road::regions) return out;
     r.kept = stage(
         context, "carve", [&] { return carve(r.grid, r.cut, r.regions, *r.index, options.fit); },
         [](const KeptCells& k) { return k.cellCount(); });
-}
-
-} // namespace
-
-std::unique_ptr<GridResult> generateGrid(const Options& options, Context& context, Road road) {
-    std::unique_ptr<GridResult> out = readGeometry(options, context);
-    makeGrid(*out, options, context, road);
     return out;
 }
 
 MeshResult generate(const Options& options, Context& context) {
     MeshResult out;
-    out.cartesian = readGeometry(options, context);
+    out.cartesian = generateGrid(options, context, Road::mesh);
     const GridResult& c = *out.cartesian;
-    const FeatureOptions wanted = featureOptions(options.geometry, c.featureLines);
-    Beside<FeatureGraph> edges([&] { return buildFeatureGraph(c.surface, wanted); });
-    apart([&] { makeGrid(*out.cartesian, options, context, Road::mesh); });
     auto lattice = std::make_unique<LatticeMesh>(c.grid, c.kept);
     const FeatureGraph features = stage(
         context, "features",
         [&] {
-            FeatureGraph graph = edges.get();
+            const FeatureOptions f = featureOptions(options.geometry, c.featureLines);
+            FeatureGraph graph = buildFeatureGraph(c.surface, f);
             // A wall that comes as near to a rim leaves no row of uncut cells for a mesh to wrap round it.
-            markRims(graph, *c.index, wanted, 2 * options.size.surface);
+            markRims(graph, *c.index, f, 2 * options.size.surface);
             return graph;
         },
         [](const FeatureGraph& f) { return f.edges.size(); });

@@ -1,5 +1,6 @@
 #include "i2b/quality/cell_quality.h"
 #include "i2b/core/parallel.h"
+#include "i2b/quality/glances.h"
 #include "i2b/quality/mesh_geometry.h"
 #include "i2b/quality/measures.h"
 #include <algorithm>
@@ -29,22 +30,30 @@ CellQuality measureCellQuality(const PolyMesh& mesh) {
     quality.volume.resize(moments.size());
     parallelFor(moments.size(), [&](std::size_t c) { quality.volume[c] = static_cast<float>(moments[c].volume); });
     const auto internal = static_cast<std::size_t>(mesh.internalFaces());
-    parallelFor(static_cast<std::size_t>(mesh.faces()), [&](std::size_t f) {
+    const auto raiseBoth = [&](std::size_t f, double ortho, double skew) {
+        const auto angle = static_cast<float>(std::acos(std::clamp(ortho, -1.0, 1.0)) * 180 / std::numbers::pi);
+        for (const std::int32_t c : {mesh.owner[f], mesh.neighbour[f]}) {
+            raise(quality.nonOrthogonality[static_cast<std::size_t>(c)], angle);
+            raise(quality.skewness[static_cast<std::size_t>(c)], static_cast<float>(skew));
+        }
+    };
+    const auto closely = [&](std::size_t f) {
         const auto face = static_cast<std::int32_t>(f);
         const FaceShape shape = measureFace(mesh, face);
-        const auto own = static_cast<std::size_t>(mesh.owner[f]);
+        const CellMoments& own = moments[static_cast<std::size_t>(mesh.owner[f])];
         if (f >= internal) {
-            raise(quality.skewness[own], static_cast<float>(faceSkewness(mesh, face, shape, moments[own].centre, nullptr, 0)));
+            raise(quality.skewness[static_cast<std::size_t>(mesh.owner[f])], static_cast<float>(faceSkewness(mesh, face, shape, own.centre, nullptr, 0)));
             return;
         }
-        const auto nei = static_cast<std::size_t>(mesh.neighbour[f]);
-        const double cosine = std::clamp(pairValues(shape, moments[own], moments[nei]).ortho, -1.0, 1.0);
-        const auto angle = static_cast<float>(std::acos(cosine) * 180 / std::numbers::pi);
-        const auto skew = static_cast<float>(faceSkewness(mesh, face, shape, moments[own].centre, &moments[nei].centre, 0));
-        for (const std::size_t c : {own, nei}) {
-            raise(quality.nonOrthogonality[c], angle);
-            raise(quality.skewness[c], skew);
-        }
+        const CellMoments& nei = moments[static_cast<std::size_t>(mesh.neighbour[f])];
+        raiseBoth(f, pairValues(shape, own, nei).ortho, faceSkewness(mesh, face, shape, own.centre, &nei.centre, 0));
+    };
+    parallelChunks(static_cast<std::size_t>(mesh.faces()), 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
+        QuadGlance quads(mesh, moments.data(), openQuadBounds);
+        const auto clear = [&](std::size_t f, const QuadBatch& batch, std::size_t lane) { raiseBoth(f, batch.ortho[lane], batch.skewness[lane]); };
+        for (std::size_t f = begin; f < end; ++f)
+            if (!quads.add(f, clear, closely)) closely(f);
+        quads.finish(clear, closely);
     });
     return quality;
 }

@@ -9,7 +9,6 @@ namespace {
 
 using Index = std::size_t;
 constexpr double least = -2;
-constexpr double leastTwist = 0.02; // cosine: minTwist of OpenFOAM's mesh quality dictionary
 constexpr double flat2 = 1e-20; // of the squared size of a face: a warp that no cell centre sees
 constexpr double leastWidth = 1e-3;  // area over the square of the reach from the centre: thinner faces have tetrahedra of no quality
 constexpr double widthScale = 40;    // so that three times that is well

@@ -9,6 +9,8 @@ namespace i2b {
 
 // Of tetShare(): below, tetrahedra may be of no quality (under 1e-15), which falls with the fourth power.
 inline constexpr double undividedShare = 1e-2;
+// Of the twist, from which its share counts: minTwist of OpenFOAM's mesh quality dictionary, a cosine.
+inline constexpr double leastTwist = 0.02;
 
 // Of a flat convex face 1, below 0 where it does not divide: the least, over its triangles, of the height of an apex over the
 // triangle's plane as a share of its height over the face's; of the fans the best one counts; and the cosine between a triangle's

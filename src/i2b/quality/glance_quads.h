@@ -27,6 +27,7 @@ struct QuadBatch {
     // out
     Lanes flat;                 // flatness
     Lanes ortho, weight, ratio; // as PairValues
+    Lanes skewness;
 };
 
 struct QuadExtremes {

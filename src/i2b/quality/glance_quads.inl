@@ -120,7 +120,7 @@ I2B_LANES unsigned glanceAtQuads(QuadBatch& b, std::size_t k, const QuadBounds& 
     markUnlessAtLeast(odd, splat(bounds.skewness), skew);
     markMaybePoorTets(point, shape.centre, own - shape.centre, fromFace, bounds, odd);
 
-    store(b.flat, k, flat), store(b.ortho, k, ortho), store(b.weight, k, weight), store(b.ratio, k, ratio);
+    store(b.flat, k, flat), store(b.ortho, k, ortho), store(b.weight, k, weight), store(b.ratio, k, ratio), store(b.skewness, k, skew);
     for (const Doubles& e : edge2) add(extremes.edge2, k, e, odd);
     add(extremes.area, k, size, odd), add(extremes.flatness, k, flat, odd), add(extremes.ortho, k, ortho, odd);
     add(extremes.weight, k, weight, odd), add(extremes.ratio, k, ratio, odd), add(extremes.skewness, k, skew, odd);

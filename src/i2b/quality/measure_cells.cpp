@@ -1,6 +1,6 @@
 #include "i2b/quality/cell_addressing.h"
 #include "i2b/quality/dictionary_measure.h"
-#include "i2b/quality/glance_hexes.h"
+#include "i2b/quality/glances.h"
 #include "i2b/quality/measure_steps.h"
 #include "i2b/quality/measures.h"
 
@@ -132,68 +132,35 @@ class CellStretch {
     // knownAspect: a ratio that cells before these reach
     CellStretch(Measurement& m, const Directions& directions, double dictionaryDeterminant, double knownAspect)
         : m_(m), directions_(directions), fullness_(dictionaryDeterminant), knownAspect_(knownAspect), faceShapes_(m.mesh), addressing_(m.mesh),
-          bounds_{m.limits.smallVolume, m.limits.closedness, m.limits.aspectRatio, m.limits.determinant, fullness_} {}
+          hexes_(m.mesh, m.cellFaces, {m.limits.smallVolume, m.limits.closedness, m.limits.aspectRatio, m.limits.determinant, fullness_}) {}
 
     // determinants: of the first cell
     void measure(Index begin, Index end, CellPart& part, double* determinants) {
         closer_.clear();
+        const auto odd = [&](std::int32_t cell) { closer_.push_back(cell); };
+        const auto clear = [&](std::int32_t cell, const HexBatch& batch, Index lane) {
+            const double known = std::min(std::max(part.aspectRatio.most, knownAspect_), m_.limits.aspectRatio);
+            const double aspect = roundness(batch.aspect[lane], batch.surface[lane], batch.volume[lane], known);
+            if (aspect > m_.limits.aspectRatio) return odd(cell);
+            m_.moments[Index(cell)] = hexes_.moments(lane);
+            determinants[Index(cell) - begin] = batch.determinant[lane];
+            part.aspectRatio.add(aspect);
+        };
         for (Index c = begin; c < end; ++c) {
             const auto cell = static_cast<std::int32_t>(c);
             const std::span<const std::int32_t> faces = m_.cellFaces[cell];
-            const bool hex = isHex(faces);
+            const bool hex = hexes_.isHex(faces);
             addressing_.measure(cell, faces, hex, part);
-            if (!hex || directions_.count != 3) {
-                closer_.push_back(cell);
-                continue;
-            }
-            take(cell, faces);
-            if (taken_ == laneCount) glance(begin, part, determinants);
+            if (hex && directions_.count == 3) hexes_.add(cell, clear, odd);
+            else odd(cell);
         }
-        if (taken_ > 0) glance(begin, part, determinants);
+        hexes_.finish(clear, odd);
         joinExtremes(part);
         std::sort(closer_.begin(), closer_.end());
         for (const std::int32_t cell : closer_) measureClosely(cell, part, determinants[Index(cell) - begin]);
     }
 
   private:
-    bool isHex(std::span<const std::int32_t> faces) const {
-        if (faces.size() != 6) return false;
-        for (const std::int32_t f : faces)
-            if (m_.mesh.faceOffsets[Index(f) + 1] - m_.mesh.faceOffsets[Index(f)] != 4) return false;
-        return true;
-    }
-
-    void take(std::int32_t cell, std::span<const std::int32_t> faces) {
-        const PolyMesh& mesh = m_.mesh;
-        for (Index i = 0; i < 6; ++i) {
-            const auto f = Index(faces[i]);
-            const std::int32_t* const v = mesh.faceVertices.data() + mesh.faceOffsets[f];
-            for (Index k = 0; k < 4; ++k) batch_.point[i][k].set(taken_, mesh.points[Index(v[k])]);
-            batch_.side[i][taken_] = mesh.owner[f] == cell ? 1 : -1;
-            batch_.inner[i][taken_] = f < mesh.neighbour.size() ? 1 : 0;
-        }
-        cell_[taken_++] = cell;
-    }
-
-    void glance(Index begin, CellPart& part, double* determinants) {
-        const Index taken = taken_;
-        while (taken_ < laneCount) take(cell_[0], m_.cellFaces[cell_[0]]); // idle lanes repeat the first
-        taken_ = 0;
-        const unsigned odd = glanceAtHexes(batch_, bounds_, extremes_);
-        for (Index lane = 0; lane < taken; ++lane) {
-            const std::int32_t cell = cell_[lane];
-            const double known = std::min(std::max(part.aspectRatio.most, knownAspect_), m_.limits.aspectRatio);
-            const double aspect = roundness(batch_.aspect[lane], batch_.surface[lane], batch_.volume[lane], known);
-            if ((odd >> lane & 1U) != 0 || aspect > m_.limits.aspectRatio) {
-                closer_.push_back(cell);
-                continue;
-            }
-            m_.moments[Index(cell)] = {batch_.centre[lane], batch_.volume[lane]};
-            determinants[Index(cell) - begin] = batch_.determinant[lane];
-            part.aspectRatio.add(aspect);
-        }
-    }
-
     void measureClosely(std::int32_t cell, CellPart& part, double& determinant) {
         const std::span<const std::int32_t> faces = m_.cellFaces[cell];
         const std::span<const FaceShape> shapes = faceShapes_.of(faces);
@@ -215,8 +182,9 @@ class CellStretch {
 
     void joinExtremes(CellPart& part) {
         const auto join = [](Extremes& to, const LaneExtremes& from) { to.join({from.leastOfAll(), from.mostOfAll()}); };
-        join(part.volume, extremes_.volume), join(part.openness, extremes_.openness);
-        join(part.determinants, extremes_.determinant), join(part.fullness, extremes_.fullness);
+        const HexExtremes& e = hexes_.extremes;
+        join(part.volume, e.volume), join(part.openness, e.openness);
+        join(part.determinants, e.determinant), join(part.fullness, e.fullness);
     }
 
     Measurement& m_;
@@ -224,11 +192,7 @@ class CellStretch {
     double fullness_, knownAspect_;
     CellFaceShapes faceShapes_;
     CellAddressing addressing_;
-    HexBounds bounds_;
-    HexBatch batch_;
-    HexExtremes extremes_;
-    std::array<std::int32_t, laneCount> cell_{};
-    Index taken_ = 0;
+    HexGlance hexes_;
     std::vector<std::int32_t> closer_;
 };
 

@@ -1,5 +1,5 @@
 #include "i2b/quality/face_measure.h"
-#include "i2b/quality/glance_quads.h"
+#include "i2b/quality/glances.h"
 #include "i2b/quality/measures.h"
 #include <numbers>
 
@@ -238,19 +238,20 @@ struct FacesPart {
 class FaceStretch {
   public:
     FaceStretch(Measurement& m, const DictionaryBounds& dictionary, const FaceCells& faceCells, const QuadBounds& bounds)
-        : m_(m), faceCells_(faceCells), bounds_(bounds), alone_(m, dictionary) {}
+        : m_(m), faceCells_(faceCells), alone_(m, dictionary), quads_(m.mesh, m.moments.data(), bounds) {}
 
     // flat, values: of the first face; flat -1 of faces that have none, values of internal faces only
     void measure(Index begin, Index end, FacesPart& part, double* flat, PairValues* values) {
-        const Index internal = m_.mesh.neighbour.size();
         closer_.clear();
-        for (Index f = begin; f < end; ++f) {
-            if (f >= internal || !take(f))
-                closer_.push_back(f);
-            else if (taken_ == laneCount)
-                glance(begin, part, flat, values);
-        }
-        if (taken_ > 0) glance(begin, part, flat, values);
+        const auto odd = [&](Index f) { closer_.push_back(f); };
+        const auto clear = [&](Index f, const QuadBatch& batch, Index lane) {
+            flat[f - begin] = batch.flat[lane];
+            values[f - begin] = {batch.ortho[lane], batch.weight[lane], batch.ratio[lane]};
+            ++part.alone.flatnessFaces;
+        };
+        for (Index f = begin; f < end; ++f)
+            if (!quads_.add(f, clear, odd)) odd(f);
+        quads_.finish(clear, odd);
         joinExtremes(part);
         std::sort(closer_.begin(), closer_.end());
         for (const Index f : closer_) {
@@ -262,55 +263,20 @@ class FaceStretch {
     }
 
   private:
-    bool take(Index f) {
-        const PolyMesh& mesh = m_.mesh;
-        const Index first = mesh.faceOffsets[f];
-        if (mesh.faceOffsets[f + 1] - first != 4) return false;
-        const std::int32_t* const v = mesh.faceVertices.data() + first;
-        if (v[0] == v[1] || v[0] == v[2] || v[0] == v[3] || v[1] == v[2] || v[1] == v[3] || v[2] == v[3]) return false;
-        for (Index i = 0; i < 4; ++i) batch_.point[i].set(taken_, mesh.points[Index(v[i])]);
-        const CellMoments& own = m_.moments[Index(mesh.owner[f])];
-        const CellMoments& nei = m_.moments[Index(mesh.neighbour[f])];
-        batch_.own.set(taken_, own.centre), batch_.nei.set(taken_, nei.centre);
-        batch_.ownVolume[taken_] = own.volume, batch_.neiVolume[taken_] = nei.volume;
-        face_[taken_++] = f;
-        return true;
-    }
-
-    void glance(Index begin, FacesPart& part, double* flat, PairValues* values) {
-        const Index taken = taken_;
-        while (taken_ < laneCount) take(face_[0]); // idle lanes repeat the first
-        taken_ = 0;
-        const unsigned odd = glanceAtQuads(batch_, bounds_, extremes_);
-        for (Index lane = 0; lane < taken; ++lane) {
-            if ((odd >> lane & 1U) != 0) {
-                closer_.push_back(face_[lane]);
-                continue;
-            }
-            const Index f = face_[lane] - begin;
-            flat[f] = batch_.flat[lane];
-            values[f] = {batch_.ortho[lane], batch_.weight[lane], batch_.ratio[lane]};
-            ++part.alone.flatnessFaces;
-        }
-    }
-
     void joinExtremes(FacesPart& part) {
         const auto join = [](Extremes& to, const LaneExtremes& from) { to.join({from.leastOfAll(), from.mostOfAll()}); };
-        join(part.alone.edge2, extremes_.edge2), join(part.alone.area, extremes_.area);
-        join(part.alone.flatness, extremes_.flatness), join(part.withCells.ortho, extremes_.ortho);
-        join(part.withCells.weight, extremes_.weight), join(part.withCells.ratio, extremes_.ratio);
-        join(part.withCells.skewness, extremes_.skewness);
-        extremes_ = {};
+        const QuadExtremes& e = quads_.extremes;
+        join(part.alone.edge2, e.edge2), join(part.alone.area, e.area);
+        join(part.alone.flatness, e.flatness), join(part.withCells.ortho, e.ortho);
+        join(part.withCells.weight, e.weight), join(part.withCells.ratio, e.ratio);
+        join(part.withCells.skewness, e.skewness);
+        quads_.extremes = {};
     }
 
     Measurement& m_;
     const FaceCells& faceCells_;
-    const QuadBounds& bounds_;
     FaceMeasure alone_;
-    QuadBatch batch_;
-    QuadExtremes extremes_;
-    std::array<Index, laneCount> face_{};
-    Index taken_ = 0;
+    QuadGlance quads_;
     std::vector<Index> closer_;
 };
 

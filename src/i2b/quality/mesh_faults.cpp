@@ -1,6 +1,7 @@
 #include "i2b/quality/mesh_faults.h"
 #include "i2b/core/parallel.h"
 #include "i2b/quality/face_tets.h"
+#include "i2b/quality/glances.h"
 #include "i2b/quality/measures.h"
 #include "i2b/quality/tally.h"
 #include <algorithm>
@@ -49,12 +50,51 @@ MeshFaults::MeshFaults(const PolyMesh& mesh, const Rows& cellFaces, const Qualit
       severeCosine_(std::cos(limits.nonOrthogonality * std::numbers::pi / 180)), moments_(Index(mesh.cells)),
       cellFlags_(Index(mesh.cells), 0), faceFlags_(Index(mesh.faces()), 0), moved_(mesh.points.size(), 0),
       changed_(Index(mesh.cells), 0) {
+    measureCells();
+    measureFaces();
+    lookAtThin();
+}
+
+// Of all cells. Where a glance finds every face's centre clearly behind all others' planes, the cell's own centre is behind them by
+// over 1/24 of that cosine (planarCosine), so that no pyramid is next to nothing.
+void MeshFaults::measureCells() {
+    HexBounds thick = openHexBounds;
+    thick.determinant = limits_.determinant;
     parallelChunks(moments_.size(), 2048, [&](Index begin, Index end, Index) {
         CellFaceShapes shapes(mesh_);
-        for (Index c = begin; c < end; ++c) measureCellAt(static_cast<std::int32_t>(c), shapes);
+        HexGlance hexes(mesh_, cellFaces_, thick), thinHexes(mesh_, cellFaces_, openHexBounds);
+        const auto closely = [&](std::int32_t cell) { measureCellAt(cell, shapes); };
+        const auto clear = [&](std::int32_t cell, const HexBatch&, Index lane) {
+            moments_[Index(cell)] = (cell < thinFrom_ ? hexes : thinHexes).moments(lane);
+        };
+        for (Index c = begin; c < end; ++c) {
+            const auto cell = static_cast<std::int32_t>(c);
+            if (!hexes.isHex(cellFaces_[cell])) closely(cell);
+            else (cell < thinFrom_ ? hexes : thinHexes).add(cell, clear, closely);
+        }
+        hexes.finish(clear, closely), thinHexes.finish(clear, closely);
     });
-    parallelFor(faceFlags_.size(), [&](Index f) { measureFaceAt(static_cast<std::int32_t>(f)); });
-    lookAtThin();
+}
+
+// Of all faces. With S the least of V^2 / L^6, V six times the volume of a tetrahedron and L twice the reach from the face's
+// centre to its vertices and the cells' centres, no height is under 2 sqrt(S) of the apex's own, and no width under 4 sqrt(S)
+// but for its scale: over S = (share / 2)^2 tetShare() is over that share where no corner is reflex and the twist has as much to
+// spare.
+void MeshFaults::measureFaces() {
+    constexpr double margin = 1.01;
+    QuadBounds bounds = openQuadBounds;
+    bounds.cosine = severeCosine_, bounds.weight = limits_.faceWeight, bounds.ratio = limits_.volumeRatio, bounds.skewness = limits_.skewness;
+    bounds.pyramid3 = std::max(0.0, 3 * limits_.pyramidVolume * margin);
+    bounds.tetShape = margin * undividedShare * undividedShare / 4;
+    bounds.twist = leastTwist + undividedShare;
+    parallelChunks(faceFlags_.size(), 4096, [&](Index begin, Index end, Index) {
+        QuadGlance quads(mesh_, moments_.data(), bounds);
+        const auto closely = [&](Index f) { measureFaceAt(static_cast<std::int32_t>(f)); };
+        const auto clear = [](Index, const QuadBatch&, Index) {};
+        for (Index f = begin; f < end; ++f)
+            if (!quads.add(f, clear, closely)) closely(f);
+        quads.finish(clear, closely);
+    });
 }
 
 // What only some of the thin cells have can be mended; what many have goes with their height.

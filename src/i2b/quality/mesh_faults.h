@@ -43,6 +43,8 @@ class MeshFaults {
   private:
     enum CellFlag : std::uint8_t { bad = 1, lowDeterminant = 2 };
     enum FaceFlag : std::uint8_t { nonOrthogonal = 1, skew = 2, lowWeight = 4, lowRatio = 8, undivided = 16 };
+    void measureCells();
+    void measureFaces();
     void measureCellAt(std::int32_t cell, CellFaceShapes& shapes);
     void measureFaceAt(std::int32_t face);
     std::vector<std::int32_t> cellsAround(const std::vector<std::int32_t>& seeds);

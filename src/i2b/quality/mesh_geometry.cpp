@@ -1,5 +1,6 @@
 #include "i2b/quality/mesh_geometry.h"
 #include "i2b/core/parallel.h"
+#include "i2b/quality/glances.h"
 #include <array>
 
 namespace i2b {
@@ -50,11 +51,18 @@ RawVector<CellMoments> measureCellMoments(const PolyMesh& mesh, const Rows& cell
     RawVector<CellMoments> cells(static_cast<Index>(mesh.cells));
     parallelChunks(cells.size(), 2048, [&](Index begin, Index end, Index) {
         CellFaceShapes shapes(mesh);
+        HexGlance hexes(mesh, cellFaces, openHexBounds);
+        const auto clear = [&](std::int32_t cell, const HexBatch&, Index lane) { cells[Index(cell)] = hexes.moments(lane); };
+        const auto closely = [&](std::int32_t cell) {
+            const std::span<const std::int32_t> faces = cellFaces[cell];
+            cells[Index(cell)] = measureCell(mesh, faces, shapes.of(faces), cell);
+        };
         for (Index c = begin; c < end; ++c) {
             const auto cell = static_cast<std::int32_t>(c);
-            const std::span<const std::int32_t> faces = cellFaces[cell];
-            cells[c] = measureCell(mesh, faces, shapes.of(faces), cell);
+            if (hexes.isHex(cellFaces[cell])) hexes.add(cell, clear, closely);
+            else closely(cell);
         }
+        hexes.finish(clear, closely);
     });
     return cells;
 }
