@@ -149,11 +149,6 @@ bool pathsStayFree(const Band& band, const SurfaceIndex& index, const std::vecto
     return true;
 }
 
-// Nodes of one colour have no corner in common: what the next one needs is seldom near what this one has.
-void fetchCorners(const Band& band, std::size_t n) {
-    for (std::int32_t c : band.cornersOf[n]) __builtin_prefetch(&band.corners[static_cast<std::size_t>(c)]);
-}
-
 } // namespace
 
 std::vector<std::int32_t> colourNodes(const Band& band, const std::vector<std::uint8_t>& wanted, std::int32_t& colours) {
@@ -161,6 +156,8 @@ std::vector<std::int32_t> colourNodes(const Band& band, const std::vector<std::u
     colours = 0;
     for (std::size_t n = 0; n < band.movable; ++n) {
         if (!wanted[n]) continue;
+        if (n + 1 < band.movable)
+            for (std::int32_t c : band.cornersOf[n + 1]) __builtin_prefetch(&band.corners[static_cast<std::size_t>(c)]);
         std::uint64_t used = 0;
         for (std::int32_t c : band.cornersOf[n]) {
             for (std::int32_t m : band.corners[static_cast<std::size_t>(c)].node) {
@@ -201,7 +198,6 @@ bool minimiseEnergy(const Band& band, const SurfaceIndex& index, const FeatureIn
                 LocalCorners corners;
                 for (std::size_t i = begin; i < end; ++i) {
                     const std::size_t n = group[i];
-                    if (i + 1 < end) fetchCorners(band, group[i + 1]);
                     corners.gather(band, n, x);
                     if (corners.empty()) continue;
                     WallTerm wall;

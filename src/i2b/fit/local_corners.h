@@ -104,6 +104,10 @@ inline void LocalCorners::gather(const Band& band, std::size_t node, const std::
     const std::span<const std::int32_t> corners = band.cornersOf[node];
     count_ = corners.size();
     if (groups_.size() < groups()) groups_.resize(groups());
+    // What a node needs is seldom near what the one before had: all of it is asked for before any is used.
+    for (const std::int32_t c : corners) __builtin_prefetch(&band.corners[static_cast<std::size_t>(c)]);
+    for (const std::int32_t c : corners)
+        for (const std::int32_t m : band.corners[static_cast<std::size_t>(c)].node) __builtin_prefetch(&x[static_cast<std::size_t>(m)]);
     const auto self = static_cast<std::int32_t>(node);
     const auto roleOf = [&](const Corner& c) { return double((c.node[1] == self) + 2 * (c.node[2] == self) + 3 * (c.node[3] == self)); };
     for (std::size_t i = 0; i < groups(); ++i) {
