@@ -128,6 +128,37 @@ TEST_P(Soups, closestEqualsBruteForce) {
     }
 }
 
+// A query over some of the triangles is one over an index of these alone: a third of them, one only, none.
+TEST_P(Soups, subsetsEqualAnIndexOfTheirOwn) {
+    const Vec3 at = Vec3{1, -0.7, 0.3} * GetParam();
+    const Surface s = dirtySoup(700, at, 1);
+    const SurfaceIndex index(s);
+    const std::function<bool(std::uint32_t)> choices[] = {[](std::uint32_t t) { return t % 3 == 0; }, [](std::uint32_t t) { return t == 41; },
+                                                          [](std::uint32_t) { return false; }};
+    for (const auto& choice : choices) {
+        Surface some = s;
+        some.triangles.clear();
+        std::vector<std::uint32_t> number;
+        for (std::uint32_t t = 0; t < s.triangles.size(); ++t)
+            if (choice(t)) some.triangles.push_back(s.triangles[t]), number.push_back(t);
+        const SurfaceIndex own(some);
+        const TriangleSubset subset = index.subset(choice);
+        Random random(5);
+        for (int i = 0; i < 1000; ++i) {
+            const Vec3 q = at + random.vec(i % 2 == 0 ? 0.3 : 3);
+            const ClosestPoint expected = own.closest(q), found = index.closeEnough(q, std::numeric_limits<double>::infinity(), -1, subset);
+            ASSERT_EQ(bool(found), bool(expected)) << i;
+            if (!found) continue;
+            ASSERT_EQ(found.triangle, number[expected.triangle]) << i;
+            ASSERT_EQ(found.distance, expected.distance) << i;
+            const double enough = expected.distance * (i % 5 == 0 ? 0.5 : 1.5), radius = 2 * expected.distance;
+            const ClosestPoint any = index.closeEnough(q, radius, enough, subset);
+            ASSERT_TRUE(any && choice(any.triangle)) << i;
+            ASSERT_LE(any.distance, std::max(enough, expected.distance)) << i;
+        }
+    }
+}
+
 // The first hit of the tree is the first hit of all triangles one by one, also along triangles' own edges.
 TEST_P(Soups, firstHitEqualsBruteForce) {
     const Vec3 at = Vec3{1, -0.7, 0.3} * GetParam();

@@ -136,8 +136,9 @@ Surface randomSoup(Random& random, int triangles) {
 TEST_P(Fill, BandsReachAsFarAsAsked) {
     Random random(GetParam() + 200);
     const Lattice l = lattice(GetParam() % 2 == 0);
-    const PartsBand band{std::make_shared<PartsIndex>(randomSoup(random, 4)), 0.1 + 1.5 * random.unit()};
-    const SurfaceIndex& index = band.parts->index;
+    const Surface soup = randomSoup(random, 4);
+    const SurfaceIndex index(soup);
+    const PartsBand band{std::make_shared<PartsIndex>(soup), 0.1 + 1.5 * random.unit()};
     for (const LevelTriple& level : levels) {
         const Mask::Ptr mask = cellsOf(Shape(band), l, level);
         const double slack = std::max(0.5 * norm(l.cellSize(level)), band.distance / 16);

@@ -65,7 +65,7 @@ TEST_P(Wanted, SizesHoldWhereTheyAreAskedFor) {
             }
             for (const LevelShape& rule : field.shapes) {
                 const auto* const band = std::get_if<PartsBand>(&rule.shape);
-                const bool meets = band ? band->parts->index.closest(cell.centre()).distance <= band->distance
+                const bool meets = band ? bool(band->parts->closeEnough(cell.centre(), band->distance, band->distance))
                                         : coverOf(rule.shape, cell) != Cover::none;
                 if (meets) {
                     EXPECT_EQ(finerOf(level.level, rule.level), level.level);

@@ -133,6 +133,17 @@ double hitTriangle(const Vec3& a, const Vec3& d, const TreeTriangle& tri) {
 // ---- walking
 // -------------------------------------------------------------------------------------------------
 
+// What queries ask of triangles, and of the children of nodes before.
+struct AcceptAll {
+    bool operator()(std::uint32_t) const { return true; }
+    static unsigned children(std::uint32_t) { return 15; }
+};
+struct AcceptAsked {
+    const std::function<bool(std::uint32_t)>& ask;
+    bool operator()(std::uint32_t t) const { return ask(t); }
+    static unsigned children(std::uint32_t) { return 15; }
+};
+
 struct SurfaceIndex::Impl {
     const Surface* surface = nullptr;
     TriangleTree tree;
@@ -195,7 +206,7 @@ void SurfaceIndex::Impl::walkClosest(const Vec3& q, const Accept& accept, double
         }
         Real key[4];
         std::memcpy(key, &sum, sizeof key);
-        if (!stack.enter(tree, node, key, bitsOf(sum <= limit), item) && !stack.pop(limit, item)) return;
+        if (!stack.enter(tree, node, key, bitsOf(sum <= limit) & accept.children(item.child), item) && !stack.pop(limit, item)) return;
     }
 }
 
@@ -252,16 +263,44 @@ SurfaceIndex& SurfaceIndex::operator=(SurfaceIndex&&) noexcept = default;
 const Surface& SurfaceIndex::surface() const { return *impl_->surface; }
 
 ClosestPoint SurfaceIndex::closest(const Vec3& q, double radius) const {
-    return impl_->closest(q, radius, [](std::uint32_t) { return true; });
+    return impl_->closest(q, radius, AcceptAll());
 }
 
 ClosestPoint SurfaceIndex::closeEnough(const Vec3& q, double radius, double enough) const {
-    return impl_->closest(q, radius, [](std::uint32_t) { return true; }, enough);
+    return impl_->closest(q, radius, AcceptAll(), enough);
+}
+
+ClosestPoint SurfaceIndex::closeEnough(const Vec3& q, double radius, double enough, const TriangleSubset& of) const {
+    struct Some {
+        const TriangleSubset& of;
+        bool operator()(std::uint32_t t) const { return of.taken_[t]; }
+        unsigned children(std::uint32_t node) const { return of.children_[node]; }
+    };
+    return impl_->closest(q, radius, Some{of}, enough);
+}
+
+// Nodes come after those above them.
+TriangleSubset SurfaceIndex::subset(const std::function<bool(std::uint32_t)>& accept) const {
+    const TriangleTree& tree = impl_->tree;
+    TriangleSubset out;
+    out.taken_.resize(tree.triangles.size());
+    for (std::uint32_t t = 0; t < out.taken_.size(); ++t) out.taken_[t] = accept(t);
+    out.children_.assign(tree.nodes.size(), 0);
+    for (std::size_t n = tree.nodes.size(); n-- > 0;) {
+        const TreeNode& node = tree.nodes[n];
+        for (unsigned i = 0; i < 4; ++i) {
+            if (node.child[i] == TreeNode::none) continue;
+            bool any = node.count[i] == 0 && out.children_[node.child[i]] != 0;
+            for (std::uint32_t k = 0; k < node.count[i]; ++k) any = any || out.taken_[tree.triangles[node.child[i] + k].id];
+            if (any) out.children_[n] = static_cast<std::uint8_t>(out.children_[n] | 1u << i);
+        }
+    }
+    return out;
 }
 
 ClosestPoint SurfaceIndex::closest(const Vec3& q, double radius,
                                    const std::function<bool(std::uint32_t)>& accept) const {
-    return impl_->closest(q, radius, accept);
+    return impl_->closest(q, radius, AcceptAsked{accept});
 }
 
 SegmentHit SurfaceIndex::firstHit(const Vec3& a, const Vec3& b, double before) const {

@@ -28,6 +28,15 @@ struct SegmentHit {
     explicit operator bool() const { return triangle != ~0u; }
 };
 
+// Some of the triangles of an index: queries pass over what holds none of them, so that they cost no more than those of an
+// index over these alone, however many others lie around.
+class TriangleSubset {
+  private:
+    friend class SurfaceIndex;
+    std::vector<bool> taken_;             // per triangle of the surface
+    std::vector<std::uint8_t> children_;  // per node of the tree: bit i, child i holds one
+};
+
 class SurfaceIndex {
   public:
     explicit SurfaceIndex(const Surface& surface); // keeps a reference: the surface must outlive it
@@ -44,6 +53,9 @@ class SurfaceIndex {
                          const std::function<bool(std::uint32_t)>& accept) const;
     // As closest(), or any point not farther than `enough`: cheaper where nothing nearer matters.
     ClosestPoint closeEnough(const Vec3& q, double radius, double enough) const;
+    // The same, over some of the triangles.
+    ClosestPoint closeEnough(const Vec3& q, double radius, double enough, const TriangleSubset& of) const;
+    TriangleSubset subset(const std::function<bool(std::uint32_t)>& accept) const;
     // The first triangle along the closed segment, from a; among equals the lowest number. Rounding decides
     // for the hit (1e-13 of the segment's and the triangle's size), so that nothing slips between triangles
     // sharing an edge.

@@ -68,12 +68,12 @@ std::unique_ptr<GridResult> generateGrid(const Options& options, Context& contex
             return readSurface(g.files, g.scale, r.notes);
         },
         [](const Surface& s) { return s.triangles.size(); });
-    r.field = stage(
-        context, "size", [&] { return makeSizeField(r.surface, options.size, options.domain); },
-        [](const SizeField& f) { return f.lattice.maxLevel + 1; });
     r.index = stage(
         context, "index", [&] { return std::make_unique<SurfaceIndex>(r.surface); },
         [&](const auto&) { return r.surface.triangles.size(); });
+    r.field = stage(
+        context, "size", [&] { return makeSizeField(r.surface, options.size, options.domain, r.index.get()); },
+        [](const SizeField& f) { return f.lattice.maxLevel + 1; });
     const LayerPlan plan = planOf(requestOf(options.layers), options.layers.unit);
     const int layerCells = plan.count + (plan.fills() ? 0 : 1); // with the one over them
     refuseTooLarge(r.surface, r.field, layerCells, road != Road::mesh);

@@ -134,7 +134,7 @@ Cover coverOf(const Cylinder& c, const Box& box) {
 Cover coverOf(const PartsBand& b, const Box& box) {
     const double half = 0.5 * norm(box.extent()) * (1 + 1e-12);
     // From what is near enough to the middle every corner is.
-    const ClosestPoint near = b.parts->index.closeEnough(box.centre(), b.distance + half, b.distance - half);
+    const ClosestPoint near = b.parts->closeEnough(box.centre(), b.distance + half, b.distance - half);
     if (!near) return Cover::none;
     const Vec3 far = cwiseMax(box.hi - near.point, near.point - box.lo); // from one point of the parts to the farthest corner
     return norm2(far) <= b.distance * b.distance ? Cover::all : Cover::some;
@@ -148,21 +148,50 @@ Box around(const Vec3& a, const Vec3& b, double radius) {
     return {box.lo - r, box.hi + r};
 }
 
-double areaOf(const Surface& s) {
-    return orderedReduce(
-        s.triangles.size(), 0.0,
+} // namespace
+
+PartsIndex::PartsIndex(Surface triangles) : surface_(std::move(triangles)), own_(std::make_unique<SurfaceIndex>(surface_)) {
+    measure(surface_, [](std::uint32_t) { return true; });
+}
+
+PartsIndex::PartsIndex(const SurfaceIndex& whole, const std::vector<bool>& chosen) : whole_(&whole) {
+    const auto isChosen = [&](std::uint32_t t) { return bool(chosen[static_cast<std::size_t>(whole.surface().partOf[t])]); };
+    chosen_ = whole.subset(isChosen);
+    measure(whole.surface(), isChosen);
+}
+
+template <class Chosen>
+void PartsIndex::measure(const Surface& s, const Chosen& isChosen) {
+    struct Sums {
+        std::size_t triangles = 0;
+        Box bounds;
+        double area = 0;
+    };
+    const Sums all = orderedReduce(
+        s.triangles.size(), Sums(),
         [&](std::size_t begin, std::size_t end) {
-            double sum = 0;
+            Sums sum;
             for (std::size_t t = begin; t < end; ++t) {
-                const Vec3& a = s.points[s.triangles[t][0]];
-                sum += 0.5 * norm(cross(s.points[s.triangles[t][1]] - a, s.points[s.triangles[t][2]] - a));
+                if (!isChosen(static_cast<std::uint32_t>(t))) continue;
+                const Vec3 &a = s.points[s.triangles[t][0]], &b = s.points[s.triangles[t][1]], &c = s.points[s.triangles[t][2]];
+                ++sum.triangles;
+                sum.bounds.add(a), sum.bounds.add(b), sum.bounds.add(c);
+                sum.area += 0.5 * norm(cross(b - a, c - a));
             }
             return sum;
         },
-        [](double a, double b) { return a + b; });
+        [](Sums a, const Sums& b) {
+            a.triangles += b.triangles, a.area += b.area;
+            if (b.triangles > 0) a.bounds.add(b.bounds.lo), a.bounds.add(b.bounds.hi);
+            return a;
+        });
+    triangles_ = all.triangles, bounds_ = all.bounds, area_ = all.area;
 }
 
-} // namespace
+ClosestPoint PartsIndex::closeEnough(const Vec3& q, double radius, double enough) const {
+    if (own_) return own_->closeEnough(q, radius, enough);
+    return whole_->closeEnough(q, radius, enough, chosen_);
+}
 
 // The squared distance of a + t d to the box is convex in t, and its slope is straight between the places where a
 // coordinate enters or leaves the box's range.
@@ -203,12 +232,12 @@ bool meets(const Shape& shape, const Box& box) {
     const PartsBand* const band = std::get_if<PartsBand>(&shape);
     if (!band) return coverOf(shape, box) != Cover::none;
     const double reach = band->distance + 0.5 * norm(box.extent()) * (1 + 1e-12);
-    return bool(band->parts->index.closeEnough(box.centre(), reach, reach));
+    return bool(band->parts->closeEnough(box.centre(), reach, reach));
 }
 
 Box boundsOf(const Shape& shape) {
     if (const auto* const band = std::get_if<PartsBand>(&shape)) {
-        const Box b = band->parts->surface.bounds();
+        const Box& b = band->parts->bounds();
         return around(b.lo, b.hi, band->distance);
     }
     if (const auto* const c = std::get_if<Cylinder>(&shape)) return around(c->from, c->to, c->radius);
@@ -218,7 +247,7 @@ Box boundsOf(const Shape& shape) {
 
 double volumeOf(const Shape& shape) {
     using std::numbers::pi;
-    if (const auto* const band = std::get_if<PartsBand>(&shape)) return 2 * band->distance * areaOf(band->parts->surface);
+    if (const auto* const band = std::get_if<PartsBand>(&shape)) return 2 * band->distance * band->parts->area();
     if (const auto* const c = std::get_if<Cylinder>(&shape)) return pi * c->radius * c->radius * norm(c->to - c->from);
     const auto& c = std::get<Capsule>(shape);
     return pi * c.radius * c.radius * (norm(c.to - c.from) + 4.0 / 3 * c.radius);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <variant>
+#include <vector>
 
 namespace i2b {
 
@@ -20,11 +21,31 @@ struct Cylinder {
     double radius = 0; // m
 };
 
-// The triangles of some parts, and the index over them.
-struct PartsIndex {
-    explicit PartsIndex(Surface triangles) : surface(std::move(triangles)), index(surface) {}
-    const Surface surface;
-    const SurfaceIndex index;
+// The triangles of some parts. The index over them is their own or, where they are most of a surface, the whole surface's with
+// the others left out: that is there already, and as large again.
+class PartsIndex {
+  public:
+    explicit PartsIndex(Surface triangles);
+    // chosen: per part of the surface. The index must outlive this.
+    PartsIndex(const SurfaceIndex& whole, const std::vector<bool>& chosen);
+
+    std::size_t triangles() const { return triangles_; }
+    const Box& bounds() const { return bounds_; } // m
+    double area() const { return area_; }         // m^2
+    // As SurfaceIndex's.
+    ClosestPoint closeEnough(const Vec3& q, double radius, double enough) const;
+
+  private:
+    template <class Chosen>
+    void measure(const Surface& surface, const Chosen& isChosen);
+
+    Surface surface_;                     // where the index is their own
+    std::unique_ptr<SurfaceIndex> own_;
+    const SurfaceIndex* whole_ = nullptr; // where it is not
+    TriangleSubset chosen_;
+    std::size_t triangles_ = 0;
+    Box bounds_;
+    double area_ = 0;
 };
 
 // Everything within distance of the parts.

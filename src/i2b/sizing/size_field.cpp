@@ -101,7 +101,7 @@ LevelTriple levelFor(const Lattice& lattice, const Vec3& size) {
     return level;
 }
 
-SizeField makeSizeField(const Surface& surface, const SizeOptions& size, const DomainOptions& domain) {
+SizeField makeSizeField(const Surface& surface, const SizeOptions& size, const DomainOptions& domain, const SurfaceIndex* index) {
     const Box body = meshedBounds(surface);
     SizeField field;
     field.surfaceSize = size.surface;
@@ -109,7 +109,7 @@ SizeField makeSizeField(const Surface& surface, const SizeOptions& size, const D
     field.lattice = makeLattice(domainBox(body, field.maxSize, domain), field.maxSize);
     field.bufferCells = std::max(1, size.bufferCells);
     field.partLevel.assign(surface.parts.size(), levelFor(field.lattice, sameSize(size.surface)));
-    addSources(field, surface, size);
+    addSources(field, surface, size, index);
     settleLevels(field);
     return field;
 }

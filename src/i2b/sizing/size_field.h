@@ -46,8 +46,8 @@ struct SizeField {
 };
 
 // Throws Error where no lattice fits the request (empty geometry, box that misses it, more than 2^28 cells along an
-// axis).
-SizeField makeSizeField(const Surface& surface, const SizeOptions& size, const DomainOptions& domain);
+// axis). index: of the surface, which spares bands around most of it one of their own; it must then outlive the field.
+SizeField makeSizeField(const Surface& surface, const SizeOptions& size, const DomainOptions& domain, const SurfaceIndex* index = nullptr);
 
 // Sets the lattice's finest level to what the field asks for. Throws Error where that is too fine for the lattice.
 void settleLevels(SizeField& field);

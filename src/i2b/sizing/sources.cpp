@@ -1,5 +1,6 @@
 #include "i2b/sizing/sources.h"
 #include "i2b/geometry/part_names.h"
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace i2b {
@@ -14,8 +15,8 @@ std::string place(const Vec3& p) { return fmt::format("({:g} {:g} {:g})", p.x, p
 
 class Sources {
   public:
-    Sources(SizeField& field, const Surface& surface, const SizeOptions& size)
-        : field_(field), surface_(surface), min_(std::min(size.min, field.maxSize)) {}
+    Sources(SizeField& field, const Surface& surface, const SizeOptions& size, const SurfaceIndex* index)
+        : field_(field), surface_(surface), index_(index), min_(std::min(size.min, field.maxSize)) {}
 
     void addPart(const PartSize& rule) {
         const std::vector<std::size_t> parts = partsNamed(rule.part);
@@ -52,7 +53,7 @@ class Sources {
     void add(const BandSize& rule) {
         const std::vector<std::size_t> parts = partsNamed(rule.part);
         if (parts.empty()) return;
-        add(PartsBand{std::make_shared<PartsIndex>(trianglesOf(parts)), rule.distance}, rule.size,
+        add(PartsBand{indexOf(parts), rule.distance}, rule.size,
             fmt::format("the band around '{}'", rule.part));
     }
 
@@ -70,11 +71,12 @@ class Sources {
     }
     LevelTriple levelOf(const Vec3& asked, const std::string& name);
     std::vector<std::size_t> partsNamed(const std::string& name);
-    Surface trianglesOf(const std::vector<std::size_t>& parts) const;
+    std::shared_ptr<const PartsIndex> indexOf(const std::vector<std::size_t>& parts) const;
     bool clip(const LineSize& rule, Capsule& inside) const;
 
     SizeField& field_;
     const Surface& surface_;
+    const SurfaceIndex* index_; // of the surface, or null
     double min_; // m
 };
 
@@ -105,9 +107,13 @@ std::vector<std::size_t> Sources::partsNamed(const std::string& name) {
     return found;
 }
 
-Surface Sources::trianglesOf(const std::vector<std::size_t>& parts) const {
+std::shared_ptr<const PartsIndex> Sources::indexOf(const std::vector<std::size_t>& parts) const {
     std::vector<bool> chosen(surface_.parts.size());
     for (std::size_t p : parts) chosen[p] = true;
+    if (index_) {
+        const auto triangles = static_cast<std::size_t>(std::count_if(surface_.partOf.begin(), surface_.partOf.end(), [&](auto p) { return chosen[static_cast<std::size_t>(p)]; }));
+        if (2 * triangles >= surface_.triangles.size()) return std::make_shared<PartsIndex>(*index_, chosen);
+    }
     Surface some;
     some.points = surface_.points;
     some.parts = surface_.parts;
@@ -116,7 +122,7 @@ Surface Sources::trianglesOf(const std::vector<std::size_t>& parts) const {
         some.triangles.push_back(surface_.triangles[t]);
         some.partOf.push_back(surface_.partOf[t]);
     }
-    return some;
+    return std::make_shared<PartsIndex>(std::move(some));
 }
 
 // The part of a line inside the domain, a trifle longer.
@@ -140,8 +146,8 @@ bool Sources::clip(const LineSize& rule, Capsule& inside) const {
 
 } // namespace
 
-void addSources(SizeField& field, const Surface& surface, const SizeOptions& size) {
-    Sources sources(field, surface, size);
+void addSources(SizeField& field, const Surface& surface, const SizeOptions& size, const SurfaceIndex* index) {
+    Sources sources(field, surface, size, index);
     for (const PartSize& rule : size.parts) sources.addPart(rule);
     for (const BoxSize& rule : size.boxes) sources.addBox(rule);
     for (const SphereSize& rule : size.spheres) sources.add(rule);

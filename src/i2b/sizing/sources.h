@@ -5,6 +5,7 @@
 namespace i2b {
 
 // Parts, boxes and shapes. Sizes beyond the limits are clamped, with a note; so are ratios of the sizes along the axes.
-void addSources(SizeField& field, const Surface& surface, const SizeOptions& size);
+// index: as makeSizeField()'s.
+void addSources(SizeField& field, const Surface& surface, const SizeOptions& size, const SurfaceIndex* index);
 
 } // namespace i2b
