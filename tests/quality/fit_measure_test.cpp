@@ -253,6 +253,25 @@ TEST(FitMeasure, bordersOfWhatIsHiddenAreNotAskedFor) {
     EXPECT_EQ(fin(1.4), without);
 }
 
+// Edges of a block behind the wall, 0.2 h away, are none that the wall could have; those of one before it are missed.
+TEST(FitMeasure, sharpEdgesThatAreHiddenAreNotAskedFor) {
+    const PolyMesh mesh = cubeWall([](Vec3 p) { return p; });
+    const FitReport without = fit(mesh, box(1));
+    const auto withBlock = [&](double low, double high) {
+        Surface s = box(1);
+        const Surface block = box(1);
+        const auto first = static_cast<std::uint32_t>(s.points.size());
+        for (const Vec3& p : block.points) s.points.push_back({0.23 + 0.5 * p.x, 0.23 + 0.5 * p.y, low + (high - low) * p.z});
+        for (const auto& t : block.triangles) s.triangles.push_back({first + t[0], first + t[1], first + t[2]}), s.partOf.push_back(0);
+        return fit(mesh, s);
+    };
+    const FitReport behind = withBlock(1 + 0.2 * h, 1.5), before = withBlock(0.5, 1 - 0.2 * h);
+    EXPECT_EQ(behind.featureSamples, without.featureSamples);
+    EXPECT_DOUBLE_EQ(behind.featureCaptureFraction, 1);
+    EXPECT_GT(before.featureSamples, without.featureSamples + 30);
+    EXPECT_LT(before.featureCaptureFraction, 0.95);
+}
+
 // A line of many short edges is sampled like one long edge: by length, not by edge.
 TEST(FitMeasure, samplesByLength) {
     Surface s = box(1);

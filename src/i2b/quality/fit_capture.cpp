@@ -1,9 +1,14 @@
 // How much of the geometry's sharp edges the wall has captured.
 #include "i2b/quality/line_capture.h"
+#include <algorithm>
+#include <array>
 #include <numbers>
 
 namespace i2b {
 namespace {
+
+constexpr std::array overWall{0.3, 1.0}; // of h: an edge seen from neither height over the wall is hidden,
+constexpr double hiddenBy = 0.05;        // of h: if it lies so far behind what is seen
 
 // Edges of the wall where two of its faces fold by more than the crease angle.
 Surface creaseSurface(const PolyMesh& mesh, const Wall& wall) {
@@ -37,11 +42,16 @@ Surface sharpSurface(const FeatureGraph& features) {
     return s;
 }
 
-void measureCapture(const PolyMesh& mesh, const Wall& wall, const Surface& sharpEdges, const SurfaceIndex& sharp, FitReport& report) {
+void measureCapture(const PolyMesh& mesh, const Wall& wall, const SurfaceIndex& index, const Surface& sharpEdges, const SurfaceIndex& sharp,
+                    FitReport& report) {
     const Surface creases = creaseSurface(mesh, wall);
     const SurfaceIndex creaseIndex(creases);
+    // An edge that ends inside another part is none that a wall could have.
+    const auto isReached = [&](const Vec3& p, std::uint32_t, const WallPlace& at) {
+        return std::any_of(overWall.begin(), overWall.end(), [&](double height) { return isSeenFrom(index, flowOver(wall, at, height * at.h), p, hiddenBy * at.h); });
+    };
     const LineSamples n = captureLines(
-        mesh, wall, sharpEdges, sharp, [](const Vec3&, std::uint32_t, const WallPlace&) { return true; },
+        mesh, wall, sharpEdges, sharp, isReached,
         [&](const Vec3& p, std::uint32_t, const WallPlace& at) { return bool(creaseIndex.closest(p, 0.1 * at.h)); });
     report.featureSamples = n.samples;
     if (n.samples > 0) report.featureCaptureFraction = static_cast<double>(n.captured) / static_cast<double>(n.samples);

@@ -86,7 +86,7 @@ FitReport measureFit(const PolyMesh& mesh, const SurfaceIndex& index, const Feat
     const SurfaceIndex sharp(sharpEdges);
     std::vector<double> distance = measureNodes(mesh, wall, index, report);
     const std::vector<std::uint8_t> tilted = measureFaces(wall, index, sharp, report);
-    if (!sharpEdges.triangles.empty()) measureCapture(mesh, wall, sharpEdges, sharp, report);
+    if (!sharpEdges.triangles.empty()) measureCapture(mesh, wall, index, sharpEdges, sharp, report);
     if (!nodes) return report;
     nodes->distanceInH = std::move(distance);
     nodes->tilted.assign(wall.nodes.size(), 0);

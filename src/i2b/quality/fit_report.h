@@ -8,7 +8,8 @@
 //
 // Captured: samples are taken every h/4 along the geometry's edges of 40 degrees and more, where the wall
 // comes within h/2 and where the edge is resolvable: every such edge stays within 0.1 h of the sample's own
-// straight line as far as h from the sample. The share that has a wall edge, folded by more than 25 degrees,
+// straight line as far as h from the sample; and where geometry does not hide it: an edge inside another part, more than
+// 0.05 h behind what is seen from 0.3 h and from h over the nearest wall, is none that a wall could have. The share that has a wall edge, folded by more than 25 degrees,
 // within 0.1 h.
 //
 // Borders: the same along the lines where two parts meet (border_lines.h), of samples that are seen from the flow 0.3 h

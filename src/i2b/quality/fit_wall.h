@@ -35,7 +35,7 @@ double degreesBetween(const Vec3& a, const Vec3& b);
 // The sharp edges of the geometry as triangles without area.
 Surface sharpSurface(const FeatureGraph& features);
 
-// Fills the report's share of captured samples (fit_report.h). sharp: the index of sharpEdges, which is not empty.
-void measureCapture(const PolyMesh& mesh, const Wall& wall, const Surface& sharpEdges, const SurfaceIndex& sharp, FitReport& report);
+// Fills the report's share of captured samples (fit_report.h). index: of the geometry; sharp: of sharpEdges, which is not empty.
+void measureCapture(const PolyMesh& mesh, const Wall& wall, const SurfaceIndex& index, const Surface& sharpEdges, const SurfaceIndex& sharp, FitReport& report);
 
 } // namespace i2b

@@ -5,6 +5,8 @@
 namespace i2b {
 namespace {
 
+constexpr double inwards = 0.3; // of the way to the face's centre
+
 // The wall within reach of the lines, in triangles around the face centres (as OpenFOAM's areas are); faceOf tells
 // each triangle's face. The rest of a wall would cost more memory than all else here, and nothing asks for it.
 Surface wallSurface(const PolyMesh& mesh, const Wall& wall, const SurfaceIndex& lines, double reach, std::vector<std::uint32_t>& faceOf) {
@@ -135,6 +137,16 @@ bool isResolvable(const Surface& lines, const SurfaceIndex& index, const Sample&
 }
 
 } // namespace
+
+Vec3 flowOver(const Wall& wall, const WallPlace& at, double height) {
+    const FaceShape& face = wall.shapes[std::size_t(at.face)];
+    return at.point + (face.centre - at.point) * inwards - normalized(face.area) * height;
+}
+
+bool isSeenFrom(const SurfaceIndex& index, const Vec3& flow, const Vec3& place, double lastBit) {
+    const double far = norm(place - flow);
+    return far > 0 && !index.firstHit(flow, place, 1 - lastBit / far);
+}
 
 void addSegment(Surface& s, const Vec3& a, const Vec3& b) {
     const auto n = static_cast<std::uint32_t>(s.points.size());

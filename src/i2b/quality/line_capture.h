@@ -26,6 +26,11 @@ using LineAsk = std::function<bool(const Vec3& sample, std::uint32_t line, const
 LineSamples captureLines(const PolyMesh& mesh, const Wall& wall, const Surface& lines, const SurfaceIndex& lineIndex, const LineAsk& counts,
                          const LineAsk& isCaptured);
 
+// A place in the flow, so many m over the nearest wall: over the inside of its face, since over the rim may be another part.
+Vec3 flowOver(const Wall& wall, const WallPlace& at, double height);
+// Whether nothing of the geometry is in the way from the flow to a place, but for the last bit (m).
+bool isSeenFrom(const SurfaceIndex& index, const Vec3& flow, const Vec3& place, double lastBit);
+
 // Appends a segment as a triangle without area, which a SurfaceIndex takes like any other.
 void addSegment(Surface& s, const Vec3& a, const Vec3& b);
 

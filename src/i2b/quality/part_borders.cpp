@@ -10,7 +10,6 @@ namespace i2b {
 namespace {
 
 constexpr double touching = 0.01; // of h: parts so near to each other touch
-constexpr double inwards = 0.3;   // of the way to the face's centre
 constexpr double overWall = 0.3;  // of h: from so far over the wall a border must be seen
 constexpr double beside = 0.1;    // of h: so far from a border the flow looks for what lies at its two sides
 constexpr int looks = 60;         // of a round about a border
@@ -147,18 +146,13 @@ void measurePartBorders(const PolyMesh& mesh, const SurfaceIndex& index, const s
     std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
     const BorderLines borders = borderLines(index, nearBorders(mesh, wall, index), touching * sizes[sizes.size() / 2]);
     const SurfaceIndex lineIndex(borders.lines), patchIndex(patches.lines);
-    const auto flowAt = [&](const WallPlace& at) {
-        const FaceShape& face = wall.shapes[std::size_t(at.face)]; // over its inside: over its rim may be another part
-        return at.point + (face.centre - at.point) * inwards - normalized(face.area) * (overWall * at.h);
-    };
+    const auto flowAt = [&](const WallPlace& at) { return flowOver(wall, at, overWall * at.h); };
     const auto sidesAt = [&](const Vec3& p, std::uint32_t line, const WallPlace& at) {
         const auto& t = borders.lines.triangles[line];
         return Sides(index, p, normalized(borders.lines.points[t[1]] - borders.lines.points[t[0]]), flowAt(at), at.h);
     };
     const auto isSeen = [&](const Vec3& p, std::uint32_t line, const WallPlace& at) {
-        const Vec3 flow = flowAt(at);
-        const double far = norm(p - flow);
-        if (!(far > 0) || index.firstHit(flow, p, 1 - touching * at.h / far)) return false;
+        if (!isSeenFrom(index, flowAt(at), p, touching * at.h)) return false;
         const Sides sides = sidesAt(p, line, at);
         return sides.areOf(borders.parts[line]) && !sides.share();
     };
