@@ -37,7 +37,7 @@ void addInserted(Front& front, std::int32_t p, std::int32_t q, double t) {
     const Vec3 wall = wallPoint(front, a) + (wallPoint(front, b) - wallPoint(front, a)) * t;
     front.mesh.add_vertex({wall.x, wall.y, wall.z});
     front.corePoint.push_back(front.corePoints + static_cast<std::int32_t>(front.inserted.size()));
-    front.front.push_back(front.front[a] + (front.front[b] - front.front[a]) * t);
+    front.front.push_back(Front::Inserted{{p, q}, t}.frontAt(front.front[a], front.front[b], wall));
     front.h.push_back(std::min(front.h[a], front.h[b]));
     front.size.push_back(cwiseMin(front.size[a], front.size[b]));
     front.inside.push_back(front.inside[a] + (front.inside[b] - front.inside[a]) * t);
@@ -46,12 +46,18 @@ void addInserted(Front& front, std::int32_t p, std::int32_t q, double t) {
     front.inserted.push_back({{p, q}, t});
 }
 
-// Not all on one straight edge of a lattice face.
+// Not all on one straight edge of a lattice face. Vertices put into edges stand off them by their lift.
 bool hasArea(const Front& front, const std::vector<std::int32_t>& polygon) {
+    const auto onEdge = [&](std::int32_t v) {
+        const auto i = static_cast<std::size_t>(v);
+        if (i < front.firstInserted()) return front.front[i];
+        const Front::Inserted& inserted = front.inserted[i - front.firstInserted()];
+        const Vec3 &a = front.front[static_cast<std::size_t>(inserted.ends[0])], &b = front.front[static_cast<std::size_t>(inserted.ends[1])];
+        return a + (b - a) * inserted.t;
+    };
     Vec3 area;
-    const Vec3& o = front.front[static_cast<std::size_t>(polygon[0])];
-    for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
-        area += cross(front.front[static_cast<std::size_t>(polygon[i])] - o, front.front[static_cast<std::size_t>(polygon[i + 1])] - o);
+    const Vec3 o = onEdge(polygon[0]);
+    for (std::size_t i = 1; i + 1 < polygon.size(); ++i) area += cross(onEdge(polygon[i]) - o, onEdge(polygon[i + 1]) - o);
     const double h = front.h[static_cast<std::size_t>(polygon[0])];
     return norm(area) > 1e-3 * h * h;
 }
@@ -111,8 +117,8 @@ std::array<Vec3, 4> turnedOutline(const Vec3& of) {
 
 } // namespace
 
-Surface plateInTop(double rise) {
-    samples::Mesh plate = samples::box(-plateHalf, {plateHalf.x, plateHalf.y, rise});
+Surface plateInTop(double rise, double depth) {
+    samples::Mesh plate = samples::box({-plateHalf.x, -plateHalf.y, -depth}, {plateHalf.x, plateHalf.y, rise});
     for (Vec3& p : plate.points) p = turned(p) + Vec3{0, 0, half.z};
     Surface soup;
     addPart(soup, samples::box(-half, half), "block");
@@ -131,6 +137,19 @@ Surface lidOnTop(double over) {
     addPart(soup, lid, "lid");
     return soup;
 }
+
+Surface bentBack(double strip) {
+    const double degree = 3.14159265358979323846 / 180, x = 0.03, rest = half.x + x - strip;
+    const double z = half.z + strip * std::tan(45 * degree), top = z + rest * std::tan(10 * degree);
+    const samples::Loop2 outline{{-half.x, -half.z}, {half.x, -half.z}, {half.x, half.z}, {x, half.z}, {x - strip, z}, {-half.x, top}};
+    samples::Mesh block = samples::extrude(samples::upright({0, 0, -half.y}), outline, {}, {0, 2 * half.y});
+    for (Vec3& p : block.points) p = {p.x, -p.z, p.y};
+    Surface soup;
+    addPart(soup, block, "block");
+    return soup;
+}
+
+std::array<Vec3, 2> bentBackLine() { return {Vec3{0.03, -half.y, half.z}, Vec3{0.03, half.y, half.z}}; }
 
 std::array<Vec3, 4> lidFoot() { return turnedOutline(half); }
 

@@ -18,12 +18,16 @@ Surface turnedBox();
 Surface flushHalves();
 double borderSide(const Vec3& p); // m, signed
 // A box of about that size along the axes with a plate of 1.3 x 0.9 m let into its top, turned by an odd angle about the z
-// axis: part 1, which rises by so much above it, m. The corners of its outline on the top.
-Surface plateInTop(double rise);
+// axis: part 1, which rises by so much above it and ends so deep in it, m. The corners of its outline on the top.
+Surface plateInTop(double rise, double depth = 0.2);
 std::array<Vec3, 4> plateFoot();
 // The same box, turned itself, with a lid on its top that juts out by so much all round, m: part 1. The corners of the box's top.
 Surface lidOnTop(double over);
 std::array<Vec3, 4> lidFoot();
+// A box of about that size along the axes whose top rises by 45 degrees along a strip so wide, m, and bends back to 10 degrees behind it.
+// The ends of the sharp edge where it starts to rise.
+Surface bentBack(double strip);
+std::array<Vec3, 2> bentBackLine();
 
 // Up to the front.
 struct ToFront {

@@ -1,5 +1,5 @@
 // Proves: every mesh point that hangs on a node goes with it and no other does; a mesh that followed moves point by point is
-// the one assembled anew from the moved front; vertices put into edges stay on their edge.
+// the one assembled anew from the moved front; vertices put into edges stay at their edge.
 #include "i2b/quality/mesh_nodes.h"
 #include "pipeline/stages_run.h"
 #include <gtest/gtest.h>
@@ -112,9 +112,9 @@ TEST(MeshNodes, MovesAgreeWithTheAssembly) {
         EXPECT_EQ(d.assembled().checksum(), d.mesh.checksum()) << "seed " << seed;
         const std::size_t first = d.front.firstInserted();
         for (std::size_t i = 0; i < d.front.inserted.size(); ++i) {
-            const auto& [ends, t] = d.front.inserted[i];
-            const Vec3 a = d.front.front[static_cast<std::size_t>(ends[0])], b = d.front.front[static_cast<std::size_t>(ends[1])];
-            EXPECT_EQ(d.front.front[first + i], a + (b - a) * t);
+            const Front::Inserted& inserted = d.front.inserted[i];
+            const Vec3 a = d.front.front[static_cast<std::size_t>(inserted.ends[0])], b = d.front.front[static_cast<std::size_t>(inserted.ends[1])];
+            EXPECT_EQ(d.front.front[first + i], inserted.frontAt(a, b, wallPoint(d.front, first + i)));
         }
     }
 }

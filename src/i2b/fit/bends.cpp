@@ -1,5 +1,6 @@
 #include "i2b/fit/bends.h"
 #include "i2b/core/parallel.h"
+#include "i2b/fit/lie.h"
 #include "i2b/front/replace_faces.h"
 #include <algorithm>
 #include <array>
@@ -18,7 +19,6 @@ constexpr Want concaveWant{0.03, 0.5}, leantConcaveWant{0.01, 0.75};
 constexpr double leastBulge = 0.05;  // of h: of the front's quad at the cut, for the cell behind to stay convex as nodes go on moving
 constexpr double worstCorner = 0.1;  // scaled Jacobian that the prisms of the pieces must have
 const double leant = std::cos(6 * 3.14159265358979323846 / 180);
-const double tilted = std::cos(25 * 3.14159265358979323846 / 180);
 
 bool brings(const Want& wanted, double before, double after, double h) { return before > wanted.off * h && after < wanted.gain * before; }
 
@@ -31,27 +31,13 @@ class BendCutter {
     int cutOf(const Quad& q) const;
 
   private:
-    struct Piece {
-        double off = 0;    // m, of its middle
-        double cosine = 1; // of its normal with the geometry's
-    };
-    Piece pieceOf(std::span<const Vec3> x, double h) const;
+    Lie lieOf(std::span<const Vec3> x, double h) const { return i2b::lieOf(index_, x, h); }
     bool isSound(std::size_t a, std::size_t b, std::size_t c) const; // in the sense of the face
     bool mayMakeConcave(const Quad& q, int cut) const;
 
     const Front& front_;
     const SurfaceIndex& index_;
 };
-
-BendCutter::Piece BendCutter::pieceOf(std::span<const Vec3> x, double h) const {
-    Vec3 middle, normal;
-    for (const Vec3& p : x) middle += p;
-    middle *= 1.0 / static_cast<double>(x.size());
-    for (std::size_t i = 0; i < x.size(); ++i) normal += cross(x[i] - middle, x[i + 1 == x.size() ? 0 : i + 1] - middle);
-    const ClosestPoint c = index_.closest(middle, h);
-    if (!c) return {h, 0};
-    return {c.distance, std::abs(dot(normalized(normal), index_.normal(c.triangle)))};
-}
 
 // The prism on a triangle.
 bool BendCutter::isSound(std::size_t a, std::size_t b, std::size_t c) const {
@@ -72,13 +58,13 @@ bool BendCutter::mayMakeConcave(const Quad& q, int cut) const {
 int BendCutter::cutOf(const Quad& q) const {
     const double h = front_.h[q[0]];
     const std::array<Vec3, 4> x{front_.wall(q[0]), front_.wall(q[1]), front_.wall(q[2]), front_.wall(q[3])};
-    const Piece whole = pieceOf(x, h);
+    const Lie whole = lieOf(x, h);
     if (whole.off <= want.off * h) return -1;
     int best = -1;
     double least = want.gain * whole.off;
     for (const int d : {0, 1}) {
         const auto i = static_cast<std::size_t>(d), j = i + 1, k = i + 2, l = (i + 3) % 4;
-        const Piece one = pieceOf(std::array{x[i], x[j], x[k]}, h), other = pieceOf(std::array{x[i], x[k], x[l]}, h);
+        const Lie one = lieOf(std::array{x[i], x[j], x[k]}, h), other = lieOf(std::array{x[i], x[k], x[l]}, h);
         const double off = 0.5 * (one.off + other.off);
         if (!(off < least) || std::min(one.cosine, other.cosine) < std::min(tilted, whole.cosine)) continue;
         if (!brings(whole.cosine < leant ? leantConcaveWant : concaveWant, whole.off, off, h) && mayMakeConcave(q, d)) continue;

@@ -11,8 +11,13 @@ const double confirmedTurn = std::cos(35 * degree);
 constexpr double besideLine = 0.25; // of h: steps off a line along the planes that meet in it
 constexpr double roundedOff = 0.25; // of h: so far from the geometry two planes may meet where an edge is rounded
 constexpr double atMeeting = 0.1;   // of h: so near to where two planes meet a sharp edge is the one there
+constexpr double rimReach = 0.6;    // of h: so far from the feet the rim of a thin sheet is looked for,
+const double foldedBack = std::cos(120 * degree); // where they stand on its two sides
+constexpr double hiddenBy = 0.05;   // of h: so far behind what is seen a line is hidden
 constexpr double flush = 0.15;      // of h: the way over a higher step,
 constexpr double halfway = 0.1;     // of h: where it is so far off the geometry, changes parts halfway between its sides, not at a border
+constexpr double aside = 0.04;      // of h: so far off the way a line is over it,
+constexpr double alongWay = 0.7;    // cosine: if it does not run along it
 
 // The line in which the tangent planes of two feet meet, looked at again on the geometry three times.
 FeatureIndex::Line implicitLine(const SurfaceIndex& index, Foot a, Foot b, const Vec3& fluid, double h) {
@@ -40,7 +45,7 @@ FeatureIndex::Line implicitLine(const SurfaceIndex& index, Foot a, Foot b, const
     }
     const ClosestPoint on = index.closest(line.point, roundedOff * h);
     if (on) line.point = on.point; // of a rounded edge the middle
-    line.found = on && dot(a.normal, b.normal) < confirmedTurn;
+    line.found = on && dot(a.normal, b.normal) < confirmedTurn && isSeen(index, fluid, line.point, h);
     return line;
 }
 
@@ -84,14 +89,21 @@ Foot footOf(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>
     return footAt(index, q, f, 2 * band.reach[b]);
 }
 
+bool isSeen(const SurfaceIndex& index, const Vec3& fluid, const Vec3& place, double h) {
+    const double distance = norm(place - fluid);
+    return distance <= hiddenBy * h || !index.firstHit(fluid, place, 1 - hiddenBy * h / distance);
+}
+
 bool turns(const Foot& a, const Foot& b) {
     const double c = dot(a.normal, b.normal);
     return a.found && b.found && c < smallestTurn;
 }
 
 Between lineBetween(const SurfaceIndex& index, const FeatureIndex& features, const Foot& a, const Foot& b, const Vec3& fluid, double h) {
-    const FeatureIndex::Line line = features.closestLine((a.point + b.point) * 0.5, 0.8 * norm(a.point - b.point));
-    if (line.found) return {line, SnapKind::line};
+    double radius = 0.8 * norm(a.point - b.point);
+    if (dot(a.normal, b.normal) < foldedBack) radius = std::max(radius, rimReach * h);
+    const FeatureIndex::Line line = features.closestLine((a.point + b.point) * 0.5, radius);
+    if (line.found && isSeen(index, fluid, line.point, h)) return {line, SnapKind::line};
     return {implicitLine(index, a, b, fluid, h), SnapKind::implicitLine};
 }
 
@@ -101,8 +113,28 @@ Between lineUnder(const SurfaceIndex& index, const FeatureIndex& features, const
     if (slope == 0) return {};
     const Vec3 meeting = riser.point - down * (dot(ground.normal, riser.point - ground.point) / slope);
     const FeatureIndex::Line line = features.closestLine(meeting, atMeeting * h);
-    if (line.found) return {line, SnapKind::line};
+    if (line.found && isSeen(index, fluid, line.point, h)) return {line, SnapKind::line};
     return {implicitLine(index, ground, riser, fluid, h), SnapKind::implicitLine};
+}
+
+double nearestOn(const FeatureIndex::Line& line, const Vec3& a, const Vec3& b, Vec3& place) {
+    const Vec3 d = b - a, w = a - line.point;
+    const double dd = norm2(d), dt = dot(d, line.tangent), det = dd - dt * dt;
+    const double t = det > 1e-6 * dd ? (dt * dot(w, line.tangent) - dot(w, d)) / det : 0.5;
+    const Vec3 on = a + d * std::clamp(t, 0.0, 1.0);
+    place = line.point + line.tangent * dot(on - line.point, line.tangent);
+    return t;
+}
+
+Between lineOver(const SurfaceIndex& index, const FeatureIndex& features, const Vec3& a, const Vec3& b, const Vec3& fluid, double h) {
+    const double length = norm(b - a);
+    const FeatureIndex::Line line = features.closestLine((a + b) * 0.5, 0.5 * length);
+    if (!line.found || std::abs(dot(line.tangent, b - a)) > alongWay * length) return {};
+    Vec3 place;
+    const double t = nearestOn(line, a, b, place);
+    const Vec3 way = a + (b - a) * t;
+    if (!(t > 0 && t < 1) || norm(way - place) < aside * h || index.closest(way, aside * h) || !isSeen(index, fluid, place, h)) return {};
+    return {line, SnapKind::line};
 }
 
 Between borderBetween(const SurfaceIndex& index, const Foot& a, const Foot& b, double h) {

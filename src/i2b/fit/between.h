@@ -20,6 +20,9 @@ Foot footOf(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>
 // Their normals differ by more than 25 degrees.
 bool turns(const Foot& a, const Foot& b);
 
+// Whether a place on the geometry is seen from one in the fluid: lines that end inside another part are not.
+bool isSeen(const SurfaceIndex& index, const Vec3& fluid, const Vec3& place, double h);
+
 struct Between {
     FeatureIndex::Line line;
     SnapKind kind = SnapKind::none;
@@ -31,6 +34,13 @@ Between lineBetween(const SurfaceIndex& index, const FeatureIndex& features, con
 
 // The feature at the foot of a riser, where its plane meets that of what it stands on: no other one near by.
 Between lineUnder(const SurfaceIndex& index, const FeatureIndex& features, const Foot& ground, const Foot& riser, const Vec3& fluid, double h);
+
+// A sharp edge that the way from one place on the wall to another leaves aside by more than a few hundredths of h, though the two do
+// not turn: its sides bend back to each other within a cell.
+Between lineOver(const SurfaceIndex& index, const FeatureIndex& features, const Vec3& a, const Vec3& b, const Vec3& fluid, double h);
+
+// Where a line comes nearest to a segment: the share of the way from a to b, unlimited, and the place on the line.
+double nearestOn(const FeatureIndex::Line& line, const Vec3& a, const Vec3& b, Vec3& place);
 
 // The border between two parts that lie flush; none where they lie upon each other.
 Between borderBetween(const SurfaceIndex& index, const Foot& a, const Foot& b, double h);

@@ -12,11 +12,16 @@ constexpr double farOff = 0.6;       // of an edge: crossings farther from it be
 constexpr double nearHeld = 0.2;     // of h: crossings nearer to an end that stands on another line are left
 constexpr double beforeEnd = 0.85;   // of an edge: where it is beside the line that its end stands on
 constexpr double bridged = 0.04;     // of h: an edge whose places are farther off the geometry bridges a corner
+constexpr double bent = 0.03;        // of h: an edge farther off the geometry bridges a bend
+constexpr double flat = 0.015;       // of h: one whose middle is so near bridges none: at a single bend it is half as far off at least
+constexpr double besideLine = 0.25;  // of h: bends nearer to a line are a part of it
+constexpr double steep = 0.7;        // cosine: edges along a line lead across no bend beside it
+constexpr int looks = 8;             // equal parts of an edge, between which a bend is looked for
 
 // Of a crossing whose place on the wall is known: its place on the front.
 void placeOnFront(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, EdgeCrossing& c) {
     const auto frontOf = [&](std::int32_t n) { return x[std::size_t(band.frontNode[std::size_t(n)])]; };
-    c.front = frontOf(c.p) + (frontOf(c.q) - frontOf(c.p)) * c.t;
+    c.front = Front::Inserted{{c.p, c.q}, c.t}.frontAt(frontOf(c.p), frontOf(c.q), c.wall);
     c.alive = !index.firstHit(c.front, c.wall, 0.97);
 }
 
@@ -33,6 +38,9 @@ struct Finder {
     bool isShared(std::size_t n) const { return band.fansOf[std::size_t(band.frontNode[n]) - band.walls].size() > 1; }
     Between lineOn(std::size_t p, std::size_t q) const;
     Between lineBeside(std::size_t held, std::size_t other) const;
+    Between bendBeside(std::size_t held, std::size_t other) const;
+    Between bendOn(std::size_t p, std::size_t q) const;
+    double foldAt(std::size_t held, std::size_t other, const Vec3& way) const;
     Between lineAcross(std::size_t p, std::size_t q) const;
     EdgeCrossing on(std::int32_t edge) const;
 };
@@ -69,22 +77,66 @@ Between Finder::lineBeside(std::size_t held, std::size_t other) const {
     return {};
 }
 
+// The cosine of the wall's fold at a line, from its other side onto a way off it.
+double Finder::foldAt(std::size_t held, std::size_t other, const Vec3& way) const {
+    const Vec3 &tangent = marks.tangents[held], edge = x[other] - x[held];
+    const auto across = [&](const Vec3& v) { return normalized(v - tangent * dot(v, tangent)); };
+    Vec3 otherSide;
+    for (const BandEdge& e : band.edges[held]) {
+        const auto m = static_cast<std::size_t>(e.b);
+        if (m < band.walls && dot(x[held] - x[m], edge) > 0) otherSide += across(x[held] - x[m]);
+    }
+    return dot(normalized(otherSide), across(way));
+}
+
+// Where the geometry bends again within a cell of a line, be it round or blunt: the place that the edge is farthest off. Without a
+// vertex there the wall would fold less at the line than the geometry does, or not reach into the bend at all.
+Between Finder::bendBeside(std::size_t held, std::size_t other) const {
+    const Vec3 &tangent = marks.tangents[held], edge = x[other] - x[held], fluid = (frontOf(held) + frontOf(other)) * 0.5;
+    if (tangent == Vec3{} || std::abs(dot(tangent, normalized(edge))) > steep) return {};
+    const double h = std::max(band.h[held], band.h[other]);
+    if (index.closest(x[held] + edge * 0.5, flat * h)) return {};
+    const double foldNow = foldAt(held, other, edge);
+    Between bend;
+    double farthest = bent * h;
+    for (int i = 1; i < looks; ++i) {
+        const Vec3 place = x[held] + edge * (double(i) / looks);
+        const Foot foot = footAt(index, place, fluid, h);
+        if (!foot.found || norm(foot.point - place) <= farthest) continue;
+        const Vec3 way = foot.point - x[held];
+        const bool isNear = norm(way - tangent * dot(way, tangent)) < besideLine * h;
+        // Of a bend that makes the fold sharper what is farther away serves, too; one that blunts it is the line's own rounding.
+        if (isNear && foldAt(held, other, way) <= foldNow) continue;
+        farthest = norm(foot.point - place);
+        bend = isNear ? Between{} : Between{{foot.point, tangent, true}, SnapKind::implicitLine};
+    }
+    return bend;
+}
+
+// The same away from lines: cuts need not follow a direction there.
+Between Finder::bendOn(std::size_t p, std::size_t q) const {
+    const Vec3 edge = x[q] - x[p], fluid = (frontOf(p) + frontOf(q)) * 0.5;
+    const double h = std::max(band.h[p], band.h[q]);
+    if (index.closest(x[p] + edge * 0.5, flat * h)) return {};
+    Between bend;
+    double farthest = bent * h;
+    for (int i = 2; i < looks - 1; ++i) {
+        const Vec3 place = x[p] + edge * (double(i) / looks);
+        const Foot foot = footAt(index, place, fluid, h);
+        const Vec3 along = normalized(cross(foot.normal, edge));
+        if (!foot.found || norm(foot.point - place) <= farthest || along == Vec3{}) continue;
+        farthest = norm(foot.point - place);
+        bend = {{foot.point, along, true}, SnapKind::implicitLine};
+    }
+    return bend;
+}
+
 Between Finder::lineAcross(std::size_t p, std::size_t q) const {
     if (!marks.onLine[p] && !marks.onLine[q]) return lineOn(p, q);
     Between between;
     if (marks.onLine[p]) between = lineBeside(p, q);
     if (marks.onLine[q] && !between.line.found) between = lineBeside(q, p);
     return between;
-}
-
-// Where a line comes nearest to a segment: share of the segment's way, place on the line.
-double nearestOn(const FeatureIndex::Line& line, const Vec3& a, const Vec3& b, Vec3& place) {
-    const Vec3 d = b - a, w = a - line.point;
-    const double dd = norm2(d), dt = dot(d, line.tangent), det = dd - dt * dt;
-    const double t = det > 1e-6 * dd ? (dt * dot(w, line.tangent) - dot(w, d)) / det : 0.5;
-    const Vec3 on = a + d * std::clamp(t, 0.0, 1.0);
-    place = line.point + line.tangent * dot(on - line.point, line.tangent);
-    return t;
 }
 
 EdgeCrossing Finder::on(std::int32_t edge) const {
@@ -95,6 +147,12 @@ EdgeCrossing Finder::on(std::int32_t edge) const {
     if ((band.outside[p] & band.outside[q]) != 0 || (isShared(p) && isShared(q))) return c;
     c.beside = marks.onLine[p] || marks.onLine[q];
     Between between = lineAcross(p, q);
+    c.kind = between.kind;
+    if (!between.line.found) {
+        if (!c.beside) between = bendOn(p, q), c.bend = true;
+        else if (!(marks.onLine[p] && marks.onLine[q])) between = marks.onLine[p] ? bendBeside(p, q) : bendBeside(q, p);
+        c.kind = SnapKind::none;
+    }
     if (!between.line.found) return c;
     const Vec3 &a = x[p], &b = x[q];
     const double length = norm(b - a);
@@ -126,10 +184,13 @@ EdgeCrossing Finder::on(std::int32_t edge) const {
 WallMarks markWall(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x,
                    const std::vector<Snap>& snaps) {
     WallMarks marks;
-    marks.feet.resize(band.walls), marks.onLine.assign(band.walls, 0);
+    marks.feet.resize(band.walls), marks.onLine.assign(band.walls, 0), marks.tangents.resize(band.walls);
     parallelFor(band.walls, [&](std::size_t n) {
         marks.feet[n] = footOf(band, index, x, n);
-        marks.onLine[n] = snaps[n].kind != SnapKind::none && norm(snapLine(index, features, snaps[n], x[n], band.h[n]).point - x[n]) <= onLine * band.h[n];
+        if (snaps[n].kind == SnapKind::none) return;
+        const FeatureIndex::Line line = snapLine(index, features, snaps[n], x[n], band.h[n]);
+        marks.onLine[n] = norm(line.point - x[n]) <= onLine * band.h[n];
+        if (marks.onLine[n] && snaps[n].kind != SnapKind::corner) marks.tangents[n] = line.tangent;
     });
     parallelFor(band.walls, [&](std::size_t n) {
         if (marks.onLine[n] || !marks.feet[n].found) return;

@@ -10,6 +10,7 @@ namespace i2b {
 struct WallMarks {
     std::vector<Foot> feet;             // what it sees
     std::vector<std::uint8_t> onLine;   // stands on a line that it is held to, or on a border between parts
+    std::vector<Vec3> tangents;         // unit, of the line that it is held to; zero: none, or a corner
 };
 
 WallMarks markWall(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x,
@@ -19,8 +20,10 @@ struct EdgeCrossing {
     std::int32_t edge = -1, p = -1, q = -1; // of the front; its vertices
     double t = 0;                           // share of the way from p to q
     Vec3 front, wall;                       // m, the place on the edge of the front, and on the line
+    SnapKind kind = SnapKind::none;         // of the line; none: a bend
     Vec3 tangent;                           // unit, of the line or border
     bool beside = false;                    // an end of the edge stands on another line
+    bool bend = false;                      // away from lines
     bool alive = false;                     // false: there is none
 };
 

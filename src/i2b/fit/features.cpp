@@ -11,7 +11,8 @@ namespace {
 constexpr double degree = 3.14159265358979323846 / 180;
 const double smallestTurn = std::cos(25 * degree);
 const double flatCorner = std::cos(140 * degree), thinCorner = std::cos(12 * degree);
-constexpr double steps = 0.08;      // of h: a wall edge whose middle is farther off than this cuts across something
+constexpr double steps = 0.08;       // of h: a wall edge whose middle is farther off than this cuts across something
+constexpr double flat = 0.03;       // of h: and one whose middle is nearer has no line beside it
 constexpr double bridged = 0.04;    // of h: the same beside a line, where an edge bridges a corner
 constexpr double onLine = 0.05;   // of h: so far from a sharp edge the middle of a cut may be
 const double alongLine = std::cos(20 * degree);
@@ -28,21 +29,24 @@ struct Crossing {
 };
 
 // A node on its way to a line; none where that is too far or the node may not be snapped.
-Crossing crossingAt(const Band& band, const FeatureIndex& features, const std::vector<Vec3>& x, const Between& between, std::int32_t node) {
+Crossing crossingAt(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x, const Between& between, std::int32_t node) {
     const auto i = static_cast<std::size_t>(node);
     if (!between.line.found || band.outside[i] != 0) return {};
     FeatureIndex::Line own = between.line;
     if (between.kind == SnapKind::line) own = features.closestLine(x[i], reach * band.h[i]);
-    else own.point = own.point + own.tangent * dot(x[i] - own.point, own.tangent);
+    if (between.kind != SnapKind::line || (own.found && !isSeen(index, x[static_cast<std::size_t>(band.frontNode[i])], own.point, band.h[i]))) {
+        own = between.line;
+        own.point += own.tangent * dot(x[i] - own.point, own.tangent);
+    }
     const double d = own.found ? norm(own.point - x[i]) / band.h[i] : reach + 1;
     if (d > reach) return {};
     return {d, node, -1, {between.kind, own.point, own.tangent}};
 }
 
 // The better end of a wall edge that crosses a line.
-Crossing crossingOf(const Band& band, const FeatureIndex& features, const std::vector<Vec3>& x, const Between& between, std::int32_t p,
+Crossing crossingOf(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x, const Between& between, std::int32_t p,
                     std::int32_t q) {
-    Crossing first = crossingAt(band, features, x, between, p), second = crossingAt(band, features, x, between, q);
+    Crossing first = crossingAt(band, index, features, x, between, p), second = crossingAt(band, index, features, x, between, q);
     first.other = q, second.other = p;
     if (first.node < 0 || (second.node >= 0 && second.distance < first.distance)) return second;
     return first;
@@ -58,14 +62,12 @@ std::array<Crossing, 2> stepOf(const Band& band, const SurfaceIndex& index, cons
     const Vec3 fluid = (x[static_cast<std::size_t>(band.frontNode[a])] + x[static_cast<std::size_t>(band.frontNode[b])]) * 0.5;
     for (const double share : {0.5, 0.25, 0.75}) {
         const Vec3 way = x[a] + (x[b] - x[a]) * share;
-        // Most edges lie on what they stand on: that matters to the others alone.
-        if (share == 0.5 && index.closest(way, steps * h)) return found;
         const Foot riser = footAt(index, way, fluid, h);
         const auto lineTo = [&](const Foot& foot) { return turns(foot, riser) ? lineBetween(index, features, foot, riser, fluid, h) : Between{}; };
         const Between top = lineTo(feet[a]), bottom = lineTo(feet[b]);
         // Away from the middle of an edge that bridges a gap, planes meet where there is no step: one of its edges must be sharp.
         if (share != 0.5 && top.kind != SnapKind::line && bottom.kind != SnapKind::line) continue;
-        found = {crossingAt(band, features, x, top, p), crossingAt(band, features, x, bottom, q)};
+        found = {crossingAt(band, index, features, x, top, p), crossingAt(band, index, features, x, bottom, q)};
         if (found[0].node >= 0 || found[1].node >= 0) break;
     }
     return found;
@@ -85,7 +87,7 @@ Crossing besideLine(const Band& band, const SurfaceIndex& index, const FeatureIn
         if (index.closest(way, bridged * h)) continue; // most are
         const Foot riser = footAt(index, way, fluid, h);
         if (!riser.found || norm(riser.point - way) < bridged * h || !turns(foot, riser)) continue;
-        const Crossing c = crossingAt(band, features, x, lineUnder(index, features, foot, riser, fluid, h), free);
+        const Crossing c = crossingAt(band, index, features, x, lineUnder(index, features, foot, riser, fluid, h), free);
         if (c.node < 0 || c.distance > nextReach) continue;
         const Vec3 off = c.snap.point - own.point;
         if (norm(off - own.tangent * dot(off, own.tangent)) > linesApart * h) return c;
@@ -95,7 +97,7 @@ Crossing besideLine(const Band& band, const SurfaceIndex& index, const FeatureIn
 
 bool hangs(const Band& band, std::size_t wall) { return !band.parents[static_cast<std::size_t>(band.frontNode[wall])].empty(); }
 
-std::size_t snapCorners(const Band& band, const FeatureIndex& features, const std::vector<Foot>& feet, const std::vector<Vec3>& x,
+std::size_t snapCorners(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Foot>& feet, const std::vector<Vec3>& x,
                         std::vector<Snap>& snaps) {
     struct Candidate {
         double distance;
@@ -107,7 +109,7 @@ std::size_t snapCorners(const Band& band, const FeatureIndex& features, const st
     parallelFor(band.walls, [&](std::size_t n) {
         if (hangs(band, n) || band.outside[n] != 0) return;
         const ClosestPoint c = features.closestCorner(x[n], 0.9 * band.h[n]);
-        if (!c) return;
+        if (!c || !isSeen(index, x[static_cast<std::size_t>(band.frontNode[n])], c.point, band.h[n])) return;
         // Only where the wall around really bends: some neighbour stands on another side.
         for (const BandEdge& e : band.edges[n]) {
             const auto m = static_cast<std::size_t>(e.b);
@@ -190,7 +192,7 @@ std::size_t snapToFeatures(const Band& band, const Front& front, const SurfaceIn
                            const std::vector<Vec3>& x, std::vector<Snap>& snaps) {
     std::vector<Foot> feet(band.walls);
     parallelFor(band.walls, [&](std::size_t n) { feet[n] = footOf(band, index, x, n); });
-    std::size_t added = snapCorners(band, features, feet, x, snaps);
+    std::size_t added = snapCorners(band, index, features, feet, x, snaps);
     std::vector<Crossing> crossings(2 * front.mesh.n_edges());
     parallelFor(front.mesh.n_edges(), [&](std::size_t e) {
         const auto he = front.mesh.halfedge_handle(FrontMesh::EdgeHandle(static_cast<int>(e)), 0);
@@ -204,12 +206,19 @@ std::size_t snapToFeatures(const Band& band, const Front& front, const SurfaceIn
         }
         if (turns(feet[a], feet[b])) {
             const Vec3& fluid = x[static_cast<std::size_t>(band.frontNode[a])];
-            crossings[2 * e] = crossingOf(band, features, x, lineBetween(index, features, feet[a], feet[b], fluid, std::max(band.h[a], band.h[b])), p, q);
+            crossings[2 * e] = crossingOf(band, index, features, x, lineBetween(index, features, feet[a], feet[b], fluid, std::max(band.h[a], band.h[b])), p, q);
         } else if (feet[a].found && feet[b].found) {
-            const std::array<Crossing, 2> ends = stepOf(band, index, features, x, feet, p, q);
-            crossings[2 * e] = ends[0], crossings[2 * e + 1] = ends[1];
-            if (ends[0].node >= 0 || ends[1].node >= 0 || feet[a].part == feet[b].part) return;
-            crossings[2 * e] = crossingOf(band, features, x, borderBetween(index, feet[a], feet[b], std::max(band.h[a], band.h[b])), p, q);
+            const double h = std::max(band.h[a], band.h[b]);
+            const ClosestPoint near = index.closest((x[a] + x[b]) * 0.5, steps * h); // most edges lie on what they stand on
+            if (!near) {
+                const std::array<Crossing, 2> ends = stepOf(band, index, features, x, feet, p, q);
+                crossings[2 * e] = ends[0], crossings[2 * e + 1] = ends[1];
+                if (ends[0].node >= 0 || ends[1].node >= 0) return;
+            }
+            if (near.distance > flat * h)
+                crossings[2 * e] = crossingOf(band, index, features, x, lineOver(index, features, feet[a].point, feet[b].point, x[static_cast<std::size_t>(band.frontNode[a])], h), p, q);
+            if (crossings[2 * e].node >= 0 || feet[a].part == feet[b].part) return;
+            crossings[2 * e] = crossingOf(band, index, features, x, borderBetween(index, feet[a], feet[b], std::max(band.h[a], band.h[b])), p, q);
         }
     });
     std::erase_if(crossings, [](const Crossing& c) { return c.node < 0; });

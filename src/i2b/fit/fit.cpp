@@ -91,11 +91,12 @@ void activateSnapped(const Band& band, const std::vector<Snap>& snaps, std::vect
 
 // Nodes that should be on a feature besides, and vertices where edges still cross one.
 void seekOnce(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features, std::vector<Vec3>& x,
-              const std::vector<Snap>& snaps, FitSummary& summary) {
+              std::vector<Snap>& snaps, FitSummary& summary) {
     summary.wishes = snaps;
     snapToFeatures(band, front, index, features, x, summary.wishes);
     snapFolds(band, front, index, features, x, summary.wishes);
     summary.inserted = insertVertices(front, band, index, features, x, snaps);
+    summary.wishes.resize(snaps.size());
     for (std::size_t n = 0; n < band.walls; ++n) {
         if (snaps[n].kind != SnapKind::none) summary.wishes[n] = {};
     }

@@ -25,7 +25,7 @@ struct FitSummary {
     std::size_t active = 0;       // nodes that the energy worked on
     std::size_t snapped = 0;      // wall nodes held to a feature
     std::size_t split = 0;        // front faces split along one
-    std::vector<Snap> snaps;      // per wall node: what it is held to
+    std::vector<Snap> snaps;      // per wall node, inserted ones last: what it is held to
     std::vector<Snap> wishes;     // per wall node: what it should be held to besides, but could not be brought to
     std::size_t inserted = 0;     // vertices put where an edge crosses one
     bool cutShort = false;        // by options.seconds: sweeps were left out, and another run may end elsewhere

@@ -48,7 +48,7 @@ class FoldFinder {
 Snap FoldFinder::featureNear(std::size_t n) const {
     const double reach = farthest * band_.h[n];
     const FeatureIndex::Line line = features_.closestLine(x_[n], reach);
-    if (line.found) return {SnapKind::line, line.point, line.tangent};
+    if (line.found && isSeen(index_, x_[static_cast<std::size_t>(band_.frontNode[n])], line.point, band_.h[n])) return {SnapKind::line, line.point, line.tangent};
     Snap best;
     double least = reach;
     for (const BandEdge& e : band_.edges[n]) {

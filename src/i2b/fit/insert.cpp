@@ -3,6 +3,7 @@
 #include "i2b/fit/crossings.h"
 #include "i2b/fit/fit.h"
 #include "i2b/fit/front_room.h"
+#include "i2b/fit/lie.h"
 #include "i2b/front/replace_faces.h"
 #include <algorithm>
 
@@ -11,8 +12,11 @@ namespace {
 
 constexpr double follows = 0.2;      // of h: so near to a line what a cut along it ends at may be
 constexpr double onLine = 0.1;       // of h: a cut whose middle is so near to a line lies on it
+constexpr double onGeometry = 0.03;  // of h: so near to the geometry the middle of a cut from bend to bend must be
+constexpr double nearer = 0.8;       // share of its distance that the pieces of a face may keep where bends are cut
 const double alongLine = std::cos(20 * 3.14159265358979323846 / 180);
-constexpr double worstCorner = 0.06; // scaled Jacobian that a piece of a prism must have
+constexpr double worstCorner = 0.06; // scaled Jacobian that a piece of a prism must have,
+constexpr double worstAtBend = 0.15; // and where no line asks for it
 constexpr std::size_t mostVertices = 8; // of a front face
 
 struct Place { // a vertex of a face that may be cut
@@ -31,8 +35,8 @@ struct Cuts { // of one face
 class Inserter {
   public:
     Inserter(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features, std::vector<Vec3>& x,
-             const std::vector<Snap>& snaps)
-        : front_(front), band_(band), index_(index), features_(features), x_(x), marks_(markWall(band, index, features, x, snaps)) {}
+             std::vector<Snap>& snaps)
+        : front_(front), band_(band), index_(index), features_(features), x_(x), snaps_(snaps), marks_(markWall(band, index, features, x, snaps)) {}
     std::size_t run();
 
   private:
@@ -45,7 +49,11 @@ class Inserter {
     bool liesOnLine(const Ring& ring, std::size_t from, std::size_t to) const;
     Foot footUnder(const Ring& ring, std::size_t from, std::size_t to) const;
     bool isOnOneEdge(const Ring& ring) const;
-    bool isValid(const Ring& ring) const;
+    bool isValid(const Ring& ring, double worst) const;
+    bool isOnBend(const Place& p) const;
+    Lie lieOfRing(const Ring& ring) const;
+    bool isNearer(const Ring& ring, const std::vector<Ring>& pieces) const;
+    bool dents(const Place& p) const;
     bool isOfWholeFace(std::int32_t edge) const;
     void lookForCrossings();
     std::vector<RoomWish> roomWanted(const std::vector<Cuts>& cuts) const;
@@ -63,6 +71,7 @@ class Inserter {
     const SurfaceIndex& index_;
     const FeatureIndex& features_;
     std::vector<Vec3>& x_;
+    std::vector<Snap>& snaps_;
     const WallMarks marks_;
     std::vector<EdgeCrossing> crossings_;
     std::vector<std::int32_t> crossingOf_;  // per edge of the front; -1: none
@@ -88,8 +97,10 @@ bool Inserter::runsAlong(const Place& from, const Place& to) const {
     return c.beside && norm(way - c.tangent * dot(way, c.tangent)) < follows * band_.h[std::size_t(c.p)];
 }
 
-// Do nodes at both sides of a cut stand on different sides of a line?
+// Do nodes at both sides of a cut stand on different sides of a line, or does it lie in a bend?
 bool Inserter::differ(const Ring& ring, std::size_t from, std::size_t to) const {
+    const Vec3 middle = (wallAt(ring[from]) + wallAt(ring[to])) * 0.5;
+    if (isOnBend(ring[from]) || isOnBend(ring[to])) return bool(index_.closest(middle, onGeometry * hAt(ring[from])));
     if (runsAlong(ring[from], ring[to]) || runsAlong(ring[to], ring[from])) return true;
     for (std::size_t i = from + 1; i < to; ++i) {
         if (ring[i].star) continue;
@@ -154,9 +165,9 @@ bool Inserter::isOnOneEdge(const Ring& ring) const {
 }
 
 // Corners of the prism on a piece; new vertices in the middle of an edge have none.
-bool Inserter::isValid(const Ring& ring) const {
+bool Inserter::isValid(const Ring& ring, double worst) const {
     const std::size_t n = ring.size();
-    if (n > mostVertices || isOnOneEdge(ring)) return false;
+    if (n > mostVertices || isOnOneEdge(ring) || std::any_of(ring.begin(), ring.end(), [&](const Place& p) { return dents(p); })) return false;
     for (std::size_t i = 0; i < n; ++i) {
         const Place &before = ring[(i + n - 1) % n], &at = ring[i], &after = ring[(i + 1) % n];
         if (at.vertex < 0 && !at.isEnd) continue;
@@ -165,10 +176,43 @@ bool Inserter::isValid(const Ring& ring) const {
             return l > 0 ? dot(cross(a, b), c) / l : -1;
         };
         const Vec3 way = wallAt(at) - frontAt(at);
-        if (corner(frontAt(after) - frontAt(at), frontAt(before) - frontAt(at), way) < worstCorner) return false;
-        if (corner(wallAt(before) - wallAt(at), wallAt(after) - wallAt(at), -way) < worstCorner) return false;
+        if (corner(frontAt(after) - frontAt(at), frontAt(before) - frontAt(at), way) < worst) return false;
+        if (corner(wallAt(before) - wallAt(at), wallAt(after) - wallAt(at), -way) < worst) return false;
     }
     return true;
+}
+
+bool Inserter::isOnBend(const Place& p) const { return p.crossing >= 0 && crossings_[std::size_t(p.crossing)].bend; }
+
+Lie Inserter::lieOfRing(const Ring& ring) const {
+    std::array<Vec3, 2 * mostVertices> x;
+    std::size_t n = 0;
+    for (const Place& p : ring) {
+        if (n < x.size()) x[n++] = wallAt(p);
+    }
+    return lieOf(index_, std::span(x).first(n), hAt(ring.front()));
+}
+
+// A cut at bends pays only where the pieces are much nearer to the geometry than the whole face, and none leans.
+bool Inserter::isNearer(const Ring& ring, const std::vector<Ring>& pieces) const {
+    Ring whole = ring;
+    std::erase_if(whole, [](const Place& p) { return p.vertex < 0; });
+    const Lie before = lieOfRing(whole);
+    double off = 0;
+    for (const Ring& piece : pieces) {
+        const Lie lie = lieOfRing(piece);
+        if (lie.cosine < std::min(tilted, before.cosine)) return false;
+        off += lie.off / static_cast<double>(pieces.size());
+    }
+    return off < nearer * before.off;
+}
+
+// Would a bend that no cut ends at stick into the prism over the uncut face?
+bool Inserter::dents(const Place& p) const {
+    if (!isOnBend(p) || p.isEnd) return false;
+    const EdgeCrossing& c = crossings_[std::size_t(p.crossing)];
+    const Vec3 &a = x_[std::size_t(c.p)], &b = x_[std::size_t(c.q)];
+    return dot(c.wall - (a + (b - a) * c.t), c.front - c.wall) > 0;
 }
 
 void Inserter::divide(const Ring& ring, Cuts& cuts) const {
@@ -191,7 +235,10 @@ Cuts Inserter::cutsOf(std::size_t face) const {
     Cuts cuts;
     divide(ring, cuts);
     const bool touched = cuts.pieces.size() > 1 || std::any_of(ring.begin(), ring.end(), [](const Place& p) { return p.vertex < 0; });
-    cuts.valid = !touched || std::all_of(cuts.pieces.begin(), cuts.pieces.end(), [&](const Ring& piece) { return isValid(piece); });
+    const bool bends = std::any_of(ring.begin(), ring.end(), [&](const Place& p) { return p.crossing >= 0 && crossings_[std::size_t(p.crossing)].kind == SnapKind::none; });
+    const double worst = bends ? worstAtBend : worstCorner;
+    cuts.valid = !touched || std::all_of(cuts.pieces.begin(), cuts.pieces.end(), [&](const Ring& piece) { return isValid(piece, worst); });
+    if (cuts.valid && cuts.pieces.size() > 1 && std::any_of(ring.begin(), ring.end(), [&](const Place& p) { return isOnBend(p); })) cuts.valid = isNearer(ring, cuts.pieces);
     return cuts;
 }
 
@@ -255,6 +302,7 @@ void Inserter::apply(const std::vector<Cuts>& cuts) {
         front_.direction.push_back(front_.direction[p]);
         front_.outside.push_back(front_.outside[p] & front_.outside[q]);
         front_.inserted.push_back({{c.p, c.q}, c.t});
+        snaps_.push_back({c.kind, c.wall, c.tangent});
     }
     std::vector<FaceCut> faceCuts;
     for (std::size_t i = 0; i < cuts.size(); ++i) {
@@ -306,7 +354,16 @@ std::size_t Inserter::run() {
         followFront(band_, index_, x_, crossings_);
         cutAll();
     }
-    while (prune(cuts)) cutAll();
+    const auto isStale = [&](const Cuts& c) {
+        return std::any_of(c.pieces.begin(), c.pieces.end(), [&](const Ring& piece) {
+            return std::any_of(piece.begin(), piece.end(), [&](const Place& p) { return p.crossing >= 0 && !crossings_[std::size_t(p.crossing)].alive; });
+        });
+    };
+    while (prune(cuts)) {
+        parallelFor(faces_.size(), [&](std::size_t i) {
+            if (isStale(cuts[i])) cuts[i] = cutsOf(static_cast<std::size_t>(faces_[i]));
+        }, 64);
+    }
     apply(cuts);
     return front_.inserted.size();
 }
@@ -314,7 +371,7 @@ std::size_t Inserter::run() {
 } // namespace
 
 std::size_t insertVertices(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features, std::vector<Vec3>& x,
-                           const std::vector<Snap>& snaps) {
+                           std::vector<Snap>& snaps) {
     return Inserter(front, band, index, features, x, snaps).run();
 }
 

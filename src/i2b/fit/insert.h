@@ -8,8 +8,8 @@
 namespace i2b {
 
 // x: the fitted positions of the band's nodes, as stored in front, where front nodes make room. The band does not know the
-// new vertices. Gives how many were inserted.
+// new vertices; snaps, of the band's wall nodes, gets one for each of them: the line that it is on. Gives how many were inserted.
 std::size_t insertVertices(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features, std::vector<Vec3>& x,
-                           const std::vector<Snap>& snaps);
+                           std::vector<Snap>& snaps);
 
 } // namespace i2b

@@ -34,10 +34,18 @@ struct Front {
     std::vector<std::uint8_t> level;               // lattice level: its size
     std::vector<std::uint8_t> pieces;              // of a lattice face that was split: 2 at the first, 0 at the second; else 1
     // Vertices that the fit has put into edges: the last ones of all. Their core points have the numbers after the
-    // LatticeMesh's, and lie on the straight edge between the front positions of the two ends.
+    // LatticeMesh's.
     struct Inserted {
         std::array<std::int32_t, 2> ends{};        // vertices
         double t = 0;                              // share of the way from the first to the second
+
+        // Its front position, given those of the ends and its wall position: on the edge, and a little off it towards the wall, so
+        // that the cell behind stays convex where its face is cut from here.
+        Vec3 frontAt(const Vec3& first, const Vec3& second, const Vec3& wall) const {
+            const Vec3 onEdge = first + (second - first) * t;
+            return onEdge + (wall - onEdge) * lift;
+        }
+        static constexpr double lift = 0.05; // share of the way to the wall
     };
     std::vector<Inserted> inserted;
     // Core points of the front in the middle of an edge of a coarser cell, with the ends of that edge: ascending.

@@ -41,10 +41,12 @@ void MeshNodes::nodesOf(std::int32_t point, std::vector<MeshNode>& out) const {
     };
     if (point >= core_) {
         const auto vertex = static_cast<std::int32_t>(layers_.vertexOfPoint(static_cast<Index>(point - core_)));
-        if (vertex < first) out.push_back({MeshNode::wall, vertex}); // inserted ones stay where they are on the wall
+        out.push_back({MeshNode::wall, vertex});
         addFronts(vertex);
     } else if (point >= front_.corePoints) {
-        addFronts(first + point - front_.corePoints);
+        const std::int32_t vertex = first + point - front_.corePoints;
+        out.push_back({MeshNode::wall, vertex});
+        addFronts(vertex);
     } else if (const auto [begin, end] = fansOf(point); begin != end) {
         out.push_back({MeshNode::front, point});
     } else if (const std::int32_t i = movedPlace(point); i >= 0) {
@@ -68,6 +70,13 @@ std::uint8_t MeshNodes::outside(const MeshNode& node) const {
     return front_.outside[Index(node.kind == MeshNode::wall ? node.id : *fansOf(node.id).first)];
 }
 
+// The front position of a vertex with its wall position elsewhere.
+Vec3 MeshNodes::frontUnder(std::int32_t vertex, const Vec3& wall) const {
+    if (Index(vertex) < front_.firstInserted()) return front_.front[Index(vertex)];
+    const Front::Inserted& i = front_.inserted[Index(vertex) - front_.firstInserted()];
+    return i.frontAt(front_.front[Index(i.ends[0])], front_.front[Index(i.ends[1])], wall);
+}
+
 void MeshNodes::stack(std::int32_t vertex, const Vec3& front, const Vec3& wall, Moved& out) const {
     std::array<Vec3, maxLayers + 1> points;
     placeLayers(layers_, Index(vertex), front, wall, points.data());
@@ -76,7 +85,11 @@ void MeshNodes::stack(std::int32_t vertex, const Vec3& front, const Vec3& wall, 
 }
 
 void MeshNodes::follow(const MeshNode& node, const Vec3& to, Moved& out) const {
-    if (node.kind == MeshNode::wall) return stack(node.id, front_.front[Index(node.id)], to, out);
+    if (node.kind == MeshNode::wall) {
+        const Vec3 front = frontUnder(node.id, to);
+        if (Index(node.id) >= front_.firstInserted()) out.emplace_back(front_.corePoint[Index(node.id)], front);
+        return stack(node.id, front, to, out);
+    }
     if (node.kind == MeshNode::core) {
         out.emplace_back(front_.movedPoints[Index(node.id)], to);
         return;
@@ -90,7 +103,7 @@ void MeshNodes::follow(const MeshNode& node, const Vec3& to, Moved& out) const {
             const Front::Inserted& i = front_.inserted[Index(child->vertex) - front_.firstInserted()];
             const bool atFirst = i.ends[0] == *v;
             const Vec3 other = front_.front[Index(i.ends[atFirst ? 1 : 0])];
-            const Vec3 place = atFirst ? to + (other - to) * i.t : other + (to - other) * i.t;
+            const Vec3 place = i.frontAt(atFirst ? to : other, atFirst ? other : to, front_.wall(Index(child->vertex)));
             out.emplace_back(front_.corePoint[Index(child->vertex)], place);
             stack(child->vertex, place, front_.wall(Index(child->vertex)), out);
         }
@@ -101,6 +114,7 @@ void MeshNodes::moveTo(const MeshNode& node, const Vec3& to) {
     if (node.kind == MeshNode::core) {
         front_.movedTo[Index(node.id)] = to;
     } else if (node.kind == MeshNode::wall) {
+        front_.front[Index(node.id)] = frontUnder(node.id, to);
         front_.mesh.set_point(FrontMesh::VertexHandle(node.id), {to.x, to.y, to.z});
     } else {
         const auto [first, last] = fansOf(node.id);
@@ -109,8 +123,7 @@ void MeshNodes::moveTo(const MeshNode& node, const Vec3& to) {
             auto child = std::lower_bound(children_.begin(), children_.end(), Child{*v, 0});
             for (; child != children_.end() && child->parent == *v; ++child) {
                 const Front::Inserted& i = front_.inserted[Index(child->vertex) - front_.firstInserted()];
-                const Vec3 a = front_.front[Index(i.ends[0])];
-                front_.front[Index(child->vertex)] = a + (front_.front[Index(i.ends[1])] - a) * i.t;
+                front_.front[Index(child->vertex)] = i.frontAt(front_.front[Index(i.ends[0])], front_.front[Index(i.ends[1])], front_.wall(Index(child->vertex)));
             }
         }
     }

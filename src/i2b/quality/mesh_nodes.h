@@ -1,5 +1,6 @@
 // The nodes of an assembled mesh that may be moved after the fit, and what hangs on them: a front point carries the
-// points of the layers of its fans and of vertices put into its edges, a wall point those of its own stack.
+// points of the layers of its fans and of vertices put into its edges, a wall point those of its own stack; of a vertex put into an
+// edge its front point, too.
 #pragma once
 #include "i2b/assemble/assemble.h"
 #include <cstdint>
@@ -38,6 +39,7 @@ class MeshNodes {
     struct Fan { std::int32_t point, vertex; friend auto operator<=>(const Fan&, const Fan&) = default; };
     struct Child { std::int32_t parent, vertex; friend auto operator<=>(const Child&, const Child&) = default; };
     void stack(std::int32_t vertex, const Vec3& front, const Vec3& wall, Moved& out) const;
+    Vec3 frontUnder(std::int32_t vertex, const Vec3& wall) const;
     std::int32_t movedPlace(std::int32_t point) const; // in Front::movedPoints, or -1
 
     Front& front_;

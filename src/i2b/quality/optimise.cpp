@@ -200,7 +200,7 @@ void Optimiser::mendTets(int sweeps) {
 }
 
 void Optimiser::mendTetsOffWall(std::vector<std::int32_t> faces, int sweeps) {
-    std::vector<Vec3> places(front_.firstInserted());
+    std::vector<Vec3> places(front_.front.size());
     for (Index v = 0; v < places.size(); ++v) places[v] = front_.wall(v);
     leavers_.assign(front_.front.size(), 0);
     for (const Task& t : tasksOfFaces(faces))

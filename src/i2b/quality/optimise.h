@@ -15,7 +15,7 @@ struct Badness;
 struct WallGuide {
     const SurfaceIndex& index;
     const FeatureIndex& features;
-    std::vector<Snap>& snaps;        // per vertex of the front that the lattice has
+    std::vector<Snap>& snaps;        // per vertex of the front; those that the fit put in may be missing
     const std::vector<Snap>& wishes; // the same: features that others should be brought to, if that can be; or none
 };
 

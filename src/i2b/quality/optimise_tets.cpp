@@ -159,7 +159,7 @@ bool Optimiser::mendNodeTets(const Task& task, Worker& worker) {
             for (int i = 0; i < 27; ++i) {
                 const Vec3 way = withinSides({double(i % 3 - 1), double(i / 3 % 3 - 1), double(i / 9 - 1)}, outside);
                 if (way == Vec3{}) continue;
-                for (const double length : {0.1, 0.02}) tryStep(normalized(way) * (length * h));
+                for (const double length : {0.25, 0.1, 0.05, 0.02, 0.008}) tryStep(normalized(way) * (length * h));
             }
         }
     }

@@ -69,13 +69,12 @@ class Nodes {
     Vec3 frontNow(std::size_t v) const {
         if (v < ahead_.size()) return ahead_[v].at(beta[static_cast<std::size_t>(front_.corePoint[v])]);
         const Front::Inserted& i = front_.inserted[v - ahead_.size()];
-        const Vec3 a = frontNow(static_cast<std::size_t>(i.ends[0]));
-        return a + (frontNow(static_cast<std::size_t>(i.ends[1])) - a) * i.t;
+        return i.frontAt(frontNow(static_cast<std::size_t>(i.ends[0])), frontNow(static_cast<std::size_t>(i.ends[1])), wall_[v].at(beta[core_ + v]));
     }
     bool frontTouched(std::size_t v) const {
         if (v < ahead_.size()) return touched_[static_cast<std::size_t>(front_.corePoint[v])] != 0;
         const Front::Inserted& i = front_.inserted[v - ahead_.size()];
-        return frontTouched(static_cast<std::size_t>(i.ends[0])) || frontTouched(static_cast<std::size_t>(i.ends[1]));
+        return touched_[core_ + v] != 0 || frontTouched(static_cast<std::size_t>(i.ends[0])) || frontTouched(static_cast<std::size_t>(i.ends[1]));
     }
 
     const Front& front_;
