@@ -41,6 +41,9 @@ class BendCutter {
 
 // The prism on a triangle.
 bool BendCutter::isSound(std::size_t a, std::size_t b, std::size_t c) const {
+    // Over a divided edge and the vertex in it a piece would have a face on some of the points of the next one.
+    const std::array vertices{static_cast<std::int32_t>(a), static_cast<std::int32_t>(b), static_cast<std::int32_t>(c)};
+    if (front_.areOnOneEdge(vertices)) return false;
     return std::min({front_.cornerAt(a, c, b), front_.cornerAt(b, a, c), front_.cornerAt(c, b, a)}) >= worstCorner;
 }
 

@@ -1,6 +1,7 @@
 // Vertices for the front where the fit has none: a wall edge that still crosses a sharp edge of the geometry, or a
 // border between parts, is divided at the crossing, front and wall alike, and the faces beside it are cut from crossing
-// to crossing, so that each prism stands on one side of the line. Nothing else moves but front nodes that make room.
+// to crossing, so that each prism stands on one side of the line. So is an edge that bridges a bend, where it is farthest off. Nothing
+// else moves but front nodes that make room.
 #pragma once
 #include "i2b/fit/features.h"
 #include "i2b/front/front.h"

@@ -17,7 +17,7 @@ constexpr std::size_t mostCells = 4;    // of a group
 constexpr int mostConcave = 1;          // cells that a merge may make concave
 
 struct Verdict {
-    std::array<std::int64_t, dictionaryLimitCount + 9> counts{}; // of everything that a check names
+    std::array<std::int64_t, dictionaryLimitCount + 10> counts{}; // of everything that a check names
     std::int64_t faces = 0, concave = 0;                         // faces beyond limits, cells
 };
 
@@ -28,12 +28,13 @@ Verdict judge(const PolyMesh& mesh, const DictionaryLimits& dictionary) {
     m.cellFaces = buildCellFaces(mesh);
     measureCells(m);
     measureFaces(m);
+    measureFaceFaces(m, buildPointFaces(mesh));
     const QualityReport& r = m.report;
     Verdict v;
     Index n = 0;
     for (const DictionaryCheck& check : r.dictionary) v.counts[n++] = check.faces;
     for (const std::int64_t count : {r.negativeVolumeCells, r.openCells, r.wrongOrientedFaces, r.highlySkewFaces, r.smallDeterminantCells,
-                                     r.lowWeightFaces, r.lowVolumeRatioFaces, r.highAspectRatioCells, r.tetErrors})
+                                     r.lowWeightFaces, r.lowVolumeRatioFaces, r.highAspectRatioCells, r.tetErrors, r.duplicateFaces})
         v.counts[n++] = count;
     v.faces = r.dictionaryFaces, v.concave = r.concaveCells;
     return v;
