@@ -1,5 +1,6 @@
 // Proves: where faces are beyond the limits, dividing and uniting leaves a valid mesh with fewer of them, nothing worse and the
-// same points; those that nothing would help are told without a change; a mesh without any stays as it is; layers of asked heights are not united; the same on any number of threads.
+// same points; those that nothing would help are told without a change; a mesh without any stays as it is; layers of asked heights are united
+// within their column only; the same on any number of threads.
 #include "i2b/quality/last_resort.h"
 #include "i2b/quality/mesh_faults.h"
 #include "i2b/quality/quality_report.h"
@@ -88,14 +89,32 @@ TEST(LastResort, LooksForNoConcaveFacesUnasked) {
     EXPECT_EQ(mesh.checksum(), shaken(5).checksum());
 }
 
-TEST(LastResort, UnitesNoLayers) {
+// Cells with little room between two faces much larger than the others, one over the other.
+TEST(LastResort, UnitesLayersOfOneColumnOnly) {
     PolyMesh mesh = shaken(2);
-    const std::int32_t cells = mesh.cells;
-    const LastResort done = changePoorPlaces(mesh, poorFaces(mesh), {}, 0);
-    EXPECT_EQ(done.changes.merged, 0);
-    EXPECT_GT(done.changes.divided, 0);
-    EXPECT_EQ(mesh.cells, cells);
+    for (Vec3& p : mesh.points) p.z *= 0.04; // layers a 25th as high as wide
+    const std::vector<std::int32_t> poor = poorFaces(mesh);
+    const Rows cellFaces = buildCellFaces(mesh);
+    std::vector<std::vector<std::int32_t>> layersUnder(static_cast<std::size_t>(mesh.cells)); // cells over each other
+    for (std::int32_t f = 0; f < mesh.internalFaces(); ++f) {
+        const Vec3 area = measureFace(mesh, f).area;
+        if (std::abs(area.z) > 0.5 * norm(area)) layersUnder[static_cast<std::size_t>(mesh.owner[static_cast<std::size_t>(f)])].push_back(mesh.neighbour[static_cast<std::size_t>(f)]);
+    }
+    std::vector<std::int32_t> column(static_cast<std::size_t>(mesh.cells), -1); // owners come before neighbours
+    for (std::int32_t c = 0; c < mesh.cells; ++c) {
+        auto& own = column[static_cast<std::size_t>(c)];
+        if (own < 0) own = c;
+        for (const std::int32_t next : layersUnder[static_cast<std::size_t>(c)]) column[static_cast<std::size_t>(next)] = own;
+    }
+    const LastResort done = changePoorPlaces(mesh, poor, {}, 0);
+    ASSERT_GT(done.changes.merged, 0);
     EXPECT_EQ(mesh.validate(), "");
+    std::vector<std::int32_t> columnNow(static_cast<std::size_t>(mesh.cells), -1);
+    for (std::size_t c = 0; c < done.cellOf.size(); ++c) {
+        std::int32_t& now = columnNow[static_cast<std::size_t>(done.cellOf[c])];
+        EXPECT_TRUE(now < 0 || now == column[c]) << c;
+        now = column[c];
+    }
 }
 
 TEST(LastResort, UnitesNoRegions) {

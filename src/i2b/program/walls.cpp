@@ -17,7 +17,8 @@ void requireValid(const std::string& fault, const char* what) {
         throw Error(ErrorKind::internal, fmt::format("{}: {}", what, fault), "", "please report the case");
 }
 
-// Assembles and repairs; where layer cells cannot be made valid the wall under them is cut and all is done again.
+// Assembles and repairs; where layer cells cannot be made valid, or some of their faces do not divide, the wall under them is cut
+// and all is done again.
 RepairSummary assembleAndRepair(const WallInput& in, Walls& walls, PolyMesh& mesh, Context& context) {
     const GridResult& c = in.cartesian;
     LayerStack& layers = walls.laid.stack;
@@ -29,13 +30,19 @@ RepairSummary assembleAndRepair(const WallInput& in, Walls& walls, PolyMesh& mes
     return stage(
         context, "repair",
         [&] {
-            RepairSummary r = repair(mesh, walls.front, in.lattice, layers, startThickness, guide, in.limits);
-            for (int round = 0; r.remaining > 0 && round < mostCuts; ++round) {
+            const auto repaired = [&](bool mayThinLeave) {
+                return repair(mesh, walls.front, in.lattice, layers, startThickness, guide, in.limits, mayThinLeave);
+            };
+            const auto core = static_cast<std::int32_t>(in.lattice.cellCount());
+            RepairSummary r = repaired(false);
+            for (int round = 0; (r.remaining > 0 || !r.foldedCells.empty()) && round < mostCuts; ++round) {
+                const bool wasWrong = r.remaining > 0;
                 const std::vector<std::uint8_t> moved = std::move(r.movedWalls);
-                if (!cutUnderWrong(walls.front, layers, in.plans, *c.index, static_cast<std::int32_t>(in.lattice.cellCount()), r.wrongCells)) break;
-                mesh = assemble(parts);
-                r = repair(mesh, walls.front, in.lattice, layers, startThickness, guide, in.limits);
+                if (cutUnderWrong(walls.front, layers, in.plans, *c.index, core, wasWrong ? r.wrongCells : r.foldedCells)) mesh = assemble(parts);
+                else if (wasWrong) break;
+                r = repaired(!wasWrong);
                 for (std::size_t v = 0; v < moved.size(); ++v) r.movedWalls[v] |= moved[v];
+                if (!wasWrong && r.remaining == 0) break; // folded ones have had their chance
             }
             return r;
         },

@@ -10,7 +10,7 @@ namespace {
 using Index = std::size_t;
 constexpr double least = -2;
 constexpr double flat2 = 1e-20; // of the squared size of a face: a warp that no cell centre sees
-constexpr double leastWidth = 1e-3;  // area over the square of the reach from the centre: thinner faces have tetrahedra of no quality
+constexpr double leastWidth = 1.5e-3; // area over the square of the reach from the centre: thinner faces have tetrahedra of no quality
 constexpr double widthScale = 40;    // so that three times that is well
 constexpr double mostReflex = 0.983; // sine of the turn at a reflex corner: a little inside maxConcave, 80 degrees
 

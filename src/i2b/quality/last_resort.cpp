@@ -12,8 +12,11 @@ namespace i2b {
 namespace {
 
 using Index = std::size_t;
-constexpr int mostRounds = 4;
+constexpr int mostRounds = 16;
 constexpr std::size_t mostCells = 4;    // of a group
+constexpr std::size_t mostThinCells = 16; // the same of layers in a column
+constexpr std::size_t mostFlat = 200;    // thin cells of a small determinant
+constexpr double stackedShare = 0.5;    // of the largest face of two cells, that they meet in
 constexpr int mostConcave = 1;          // cells that a merge may make concave
 
 struct Verdict {
@@ -48,6 +51,12 @@ bool isBetter(const Verdict& now, const Verdict& before) {
 
 using Trial = LocalEdits::Trial;
 
+// Two groups, or one, as they are.
+Trial still(std::int32_t a, std::int32_t b) {
+    if (a == b) return {{a}};
+    return {{std::min(a, b), std::max(a, b)}};
+}
+
 class Changer {
   public:
     Changer(const PolyMesh& mesh, const LocalEdits& edits, const DictionaryLimits& limits, std::int32_t thinFrom)
@@ -58,7 +67,9 @@ class Changer {
     std::optional<Trial> find(std::int32_t face) const {
         const std::int32_t own = edits_.of(mesh_.owner[Index(face)]), other = edits_.across(face, own);
         if (own == other) return {};
-        if (const auto divided = divide(face, own, other)) return divided;
+        const Verdict now = judge(edits_.around(still(own, other < 0 ? own : other)), limits_);
+        if (now.faces == 0) return {};
+        if (const auto divided = divide(face, own, other, now)) return divided;
         if (other >= 0)
             if (const auto united = unite(own, other)) return united;
         for (const std::int32_t group : {own, other}) {
@@ -67,6 +78,10 @@ class Changer {
                 if (next == own || next == other) continue;
                 if (const auto united = unite(group, next)) return united;
             }
+        }
+        for (const std::int32_t group : {own, other}) {
+            if (group < thinFrom_) continue;
+            if (const auto united = uniteColumn(group)) return united;
         }
         return {};
     }
@@ -84,23 +99,76 @@ class Changer {
         return neighbours;
     }
     bool mayUnite(std::int32_t a, std::int32_t b) const {
-        if (std::max(a, b) >= thinFrom_ && std::min(a, b) >= thinFrom_) return false;
+        const bool areThin = a >= thinFrom_ && b >= thinFrom_;
         if (!mesh_.cellRegion.empty() && mesh_.cellRegion[Index(a)] != mesh_.cellRegion[Index(b)]) return false;
-        return edits_.cells(a).size() + edits_.cells(b).size() <= mostCells && edits_.meetInOneFace(a, b);
+        if (edits_.cells(a).size() + edits_.cells(b).size() > (areThin ? mostThinCells : mostCells) || !edits_.meetInOneFace(a, b)) return false;
+        return !areThin || areStacked(a, b);
+    }
+    // Of thin cells only those of one column become one, else layers would end at others: these meet in what is among the largest faces
+    // of both.
+    bool areStacked(std::int32_t a, std::int32_t b) const {
+        double shared2 = 0, largest2 = 0;
+        std::vector<std::int32_t> faces;
+        for (const std::int32_t group : {a, b}) {
+            faces.clear();
+            edits_.facesOf(group, faces);
+            for (const std::int32_t f : faces) {
+                const double size2 = norm2(measureFace(mesh_, f).area);
+                largest2 = std::max(largest2, size2);
+                if (edits_.across(f, group) == (group == a ? b : a)) shared2 = size2;
+            }
+        }
+        return shared2 > stackedShare * stackedShare * largest2;
     }
     std::optional<Trial> unite(std::int32_t a, std::int32_t b) const {
-        const Trial trial{std::min(a, b), std::max(a, b), true};
-        if (!mayUnite(trial.a, trial.b)) return {};
-        const Verdict before = judge(edits_.around({trial.a, trial.b}), limits_);
+        if (!mayUnite(a, b)) return {};
+        return uniteAll({a, b});
+    }
+    std::optional<Trial> uniteAll(std::vector<std::int32_t> groups) const {
+        std::sort(groups.begin(), groups.end());
+        const Trial trial{std::move(groups), true};
+        const Verdict before = judge(edits_.around({trial.groups}), limits_);
         if (before.faces > 0 && isBetter(judge(edits_.around(trial), limits_), before)) return trial;
         return {};
     }
-    std::optional<Trial> divide(std::int32_t face, std::int32_t own, std::int32_t other) const {
+    // The layers of the column that a thin group is of, from one end to the other: each meets the next ones only.
+    std::vector<std::int32_t> columnOf(std::int32_t group) const {
+        std::vector<std::int32_t> column{group};
+        const auto isNext = [&](std::int32_t n) {
+            const auto farther = [&](std::int32_t c) { return c == column.back() || (c != n && edits_.shareNoPoint(c, n)); };
+            return n >= thinFrom_ && mayUnite(column.back(), n) && std::ranges::all_of(column, farther);
+        };
+        const auto extend = [&] {
+            while (column.size() < mostThinCells) {
+                const std::vector<std::int32_t> next = byFace(column.back());
+                const auto at = std::ranges::find_if(next, isNext);
+                if (at == next.end()) return;
+                column.push_back(*at);
+            }
+        };
+        extend();
+        std::reverse(column.begin(), column.end());
+        extend();
+        return column;
+    }
+    // Some layers of a column as one, as few as help, this group among them.
+    std::optional<Trial> uniteColumn(std::int32_t group) const {
+        const std::vector<std::int32_t> column = columnOf(group);
+        const auto own = static_cast<Index>(std::ranges::find(column, group) - column.begin());
+        for (Index length = 3; length <= column.size(); ++length) {
+            for (Index first = own + 1 < length ? 0 : own + 1 - length; first <= own && first + length <= column.size(); ++first) {
+                const auto from = column.begin() + static_cast<std::ptrdiff_t>(first);
+                if (const auto united = uniteAll({from, from + static_cast<std::ptrdiff_t>(length)})) return united;
+            }
+        }
+        return {};
+    }
+    std::optional<Trial> divide(std::int32_t face, std::int32_t own, std::int32_t other, const Verdict& now) const {
         const auto corners = static_cast<std::uint32_t>(mesh_.face(face).size());
         if (corners < 4 || edits_.isDivided(face)) return {};
         if (other < 0) other = own;
-        Trial trial{std::min(own, other), std::max(own, other), false};
-        Verdict least = judge(edits_.around(trial), limits_);
+        Trial trial = still(own, other);
+        Verdict least = now;
         std::optional<Trial> best;
         trial.face = face;
         for (; trial.from < (corners == 4 ? 2 : corners); ++trial.from) { // a quadrangle has two diagonals
@@ -124,9 +192,10 @@ std::vector<std::int32_t> make(const std::vector<std::optional<Trial>>& changes,
     for (Index i = 0; i < changes.size(); ++i) {
         const std::optional<Trial>& change = changes[i];
         if (!change) continue;
-        const std::vector<std::int32_t> around = edits.neighboursOf(change->a, change->b);
+        const std::vector<std::int32_t> around = edits.neighboursOf(change->groups);
         if (std::ranges::any_of(around, [&](std::int32_t g) { return std::ranges::binary_search(touched, g); })) continue;
-        if (change->united) edits.unite(change->a, change->b);
+        if (change->united)
+            for (Index k = 1; k < change->groups.size(); ++k) edits.unite(change->groups.front(), change->groups[k]);
         else edits.divide(change->face, change->from);
         made[i] = 1;
         const auto middle = static_cast<std::ptrdiff_t>(touched.size());
@@ -165,6 +234,32 @@ std::vector<std::int32_t> concaveFaces(const PolyMesh& mesh, double degrees) {
             a.insert(a.end(), b.begin(), b.end());
             return a;
         });
+}
+
+// Faces of the thin cells whose determinant is too small; none where many have that, which goes with their height then.
+std::vector<std::int32_t> facesOfFlatCells(const PolyMesh& mesh, const Rows& cellFaces, std::int32_t thinFrom, double determinant) {
+    using Cells = std::vector<std::int32_t>;
+    const Cells flat = orderedReduce(
+        Index(mesh.cells - thinFrom), Cells{},
+        [&](Index begin, Index end) {
+            Cells found;
+            CellFaceShapes shapes(mesh);
+            for (Index i = begin; i < end; ++i) {
+                const std::int32_t cell = thinFrom + static_cast<std::int32_t>(i);
+                if (found.size() <= mostFlat && cellFullness(shapes.of(cellFaces[cell])) < determinant) found.push_back(cell);
+            }
+            return found;
+        },
+        [](Cells a, const Cells& b) {
+            a.insert(a.end(), b.begin(), b.end());
+            return a;
+        });
+    if (flat.size() > mostFlat) return {};
+    std::vector<std::int32_t> faces;
+    for (const std::int32_t cell : flat) faces.insert(faces.end(), cellFaces[cell].begin(), cellFaces[cell].end());
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    return faces;
 }
 
 // Per face that dividing adds to walls, the cell there; ascending.
@@ -216,7 +311,7 @@ std::vector<std::int32_t> facesBeyondHelp(const PolyMesh& mesh, const Rows& cell
         const std::int32_t face = poorFaces[i], own = edits.of(mesh.owner[Index(face)]);
         const std::int32_t across = edits.across(face, own), other = across < 0 ? own : across;
         const bool isGone = across == own; // inside a merged cell
-        left[i] = !isGone && judge(edits.around({std::min(own, other), std::max(own, other)}), limits).faces > 0;
+        left[i] = !isGone && judge(edits.around(still(own, other)), limits).faces > 0;
     }, 1);
     std::vector<std::int32_t> faces;
     for (Index i = 0; i < left.size(); ++i)
@@ -231,8 +326,15 @@ LastResort changePoorPlaces(PolyMesh& mesh, const std::vector<std::int32_t>& poo
     const bool areNamed = limits.concavity >= DictionaryLimits().concavity && thinFrom >= mesh.cells;
     if (DictionaryBounds(limits).concavityAsked && !areNamed) concave = concaveFaces(mesh, limits.concavity);
     std::ranges::set_union(poorFaces, concave, std::back_inserter(faces));
-    if (faces.empty()) return summary;
+    const bool flatAsked = thinFrom < mesh.cells && DictionaryBounds(limits).determinant > 0;
+    if (faces.empty() && !flatAsked) return summary;
     const Rows cellFaces = buildCellFaces(mesh);
+    if (flatAsked) {
+        const std::vector<std::int32_t> poor = std::move(faces);
+        faces.clear();
+        std::ranges::set_union(poor, facesOfFlatCells(mesh, cellFaces, thinFrom, limits.determinant), std::back_inserter(faces));
+    }
+    if (faces.empty()) return summary;
     LocalEdits edits(mesh, cellFaces);
     seekChanges(mesh, faces, limits, thinFrom, edits, &summary.changes.places);
     summary.changes.merged = edits.united(), summary.changes.divided = edits.divided();

@@ -24,7 +24,7 @@ struct LastResort {
 };
 
 // poorFaces: ascending, as MeshFaults names them; what lies around them is looked at. Cells from thinFrom on are layers of a height
-// that was asked for, and merge only with cells of the core.
+// that was asked for, and merge only with cells of the core and those of their own column.
 LastResort changePoorPlaces(PolyMesh& mesh, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits,
                             std::int32_t thinFrom = std::numeric_limits<std::int32_t>::max());
 

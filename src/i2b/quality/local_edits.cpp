@@ -100,35 +100,42 @@ void LocalEdits::pointsOf(std::int32_t group, std::vector<std::int32_t>& points)
 }
 
 bool LocalEdits::meetInOneFace(std::int32_t a, std::int32_t b) const {
-    std::vector<std::int32_t> faces, own, other, shared;
+    std::vector<std::int32_t> faces;
     facesOf(a, faces);
     std::erase_if(faces, [&](std::int32_t f) { return across(f, a) != b; });
-    if (faces.size() != 1) return false;
-    pointsOf(a, own), pointsOf(b, other);
-    std::set_intersection(own.begin(), own.end(), other.begin(), other.end(), std::back_inserter(shared));
-    return shared.size() == mesh_.face(faces.front()).size();
+    return faces.size() == 1 && sharedPoints(a, b) == mesh_.face(faces.front()).size();
 }
 
-std::vector<std::int32_t> LocalEdits::neighboursOf(std::int32_t a, std::int32_t b) const {
-    std::vector<std::int32_t> groups{a, b}, faces;
-    for (const std::int32_t group : {a, b}) {
+bool LocalEdits::shareNoPoint(std::int32_t a, std::int32_t b) const { return sharedPoints(a, b) == 0; }
+
+std::size_t LocalEdits::sharedPoints(std::int32_t a, std::int32_t b) const {
+    std::vector<std::int32_t> own, other, shared;
+    pointsOf(a, own), pointsOf(b, other);
+    std::set_intersection(own.begin(), own.end(), other.begin(), other.end(), std::back_inserter(shared));
+    return shared.size();
+}
+
+std::vector<std::int32_t> LocalEdits::neighboursOf(const std::vector<std::int32_t>& groups) const {
+    std::vector<std::int32_t> all = groups, faces;
+    for (const std::int32_t group : groups) {
         faces.clear();
         facesOf(group, faces);
         for (const std::int32_t f : faces)
-            if (const std::int32_t other = across(f, group); other >= 0) groups.push_back(other);
+            if (const std::int32_t other = across(f, group); other >= 0) all.push_back(other);
     }
-    sortUnique(groups);
-    return groups;
+    sortUnique(all);
+    return all;
 }
 
 PolyMesh LocalEdits::around(const Trial& trial) const {
-    std::vector<std::int32_t> cells = neighboursOf(trial.a, trial.b), faces, points;
+    std::vector<std::int32_t> cells = neighboursOf(trial.groups), faces, points;
     for (const std::int32_t group : cells) facesOf(group, faces);
     sortUnique(faces);
-    if (trial.united) std::erase(cells, trial.b);
+    const auto isTaken = [&](std::int32_t group) { return group != trial.groups.front() && std::ranges::binary_search(trial.groups, group); };
+    if (trial.united) std::erase_if(cells, isTaken);
     const auto cellOf = [&](std::int32_t cell) {
         const std::int32_t group = of(cell);
-        return placeIn(cells, trial.united && group == trial.b ? trial.a : group);
+        return placeIn(cells, trial.united && isTaken(group) ? trial.groups.front() : group);
     };
     struct Sides { std::int32_t face, owner, neighbour; };
     std::vector<Sides> inner, outer;

@@ -32,11 +32,12 @@ class LocalEdits {
     std::int32_t across(std::int32_t face, std::int32_t group) const;
     // Do two groups meet in one face, with all the points that they share?
     bool meetInOneFace(std::int32_t a, std::int32_t b) const;
+    bool shareNoPoint(std::int32_t a, std::int32_t b) const;
 
-    std::vector<std::int32_t> neighboursOf(std::int32_t a, std::int32_t b) const; // with both, ascending
-    // Two groups with all their neighbours, and what else is tried.
+    std::vector<std::int32_t> neighboursOf(const std::vector<std::int32_t>& groups) const; // with these, ascending
+    // Some groups with all their neighbours, and what is tried of them.
     struct Trial {
-        std::int32_t a, b;         // a <= b
+        std::vector<std::int32_t> groups; // ascending
         bool united = false;       // as one cell
         std::int32_t face = -1;    // divided
         std::uint32_t from = 0;    // one of its vertices
@@ -44,6 +45,7 @@ class LocalEdits {
     PolyMesh around(const Trial& trial) const;
 
   private:
+    std::size_t sharedPoints(std::int32_t a, std::int32_t b) const;
     void pointsOf(std::int32_t group, std::vector<std::int32_t>& points) const;
 
     const PolyMesh& mesh_;

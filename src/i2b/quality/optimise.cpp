@@ -132,6 +132,9 @@ std::int64_t Optimiser::sweep(std::vector<Task>& tasks, const Move& move) {
     std::int64_t moves = 0;
     for (const std::vector<std::uint32_t>& group : colour(tasks)) {
         std::vector<std::uint8_t> hasMoved(group.size(), 0);
+        std::vector<Vec3> from;
+        if (tracked_)
+            for (const std::uint32_t t : group) from.push_back(nodes_.place(tasks[t].node));
         parallelChunks(group.size(), 8, [&](Index begin, Index end, Index) {
             Worker worker(*this);
             for (Index i = begin; i < end; ++i) hasMoved[i] = move(tasks[group[i]], worker);
@@ -142,6 +145,7 @@ std::int64_t Optimiser::sweep(std::vector<Task>& tasks, const Move& move) {
             if (!hasMoved[i]) continue;
             ++moves;
             const Task& task = tasks[group[i]];
+            if (tracked_) tracked_->try_emplace(task.node, task.node, task.cell, from[i]);
             moved.clear();
             nodes_.follow(task.node, nodes_.place(task.node), moved);
             for (const auto& [p, x] : moved) points.push_back(p);
@@ -174,6 +178,18 @@ std::int64_t Optimiser::mend(int sweeps, bool mayLeave) {
     return moves;
 }
 
+void Optimiser::mendAt(const std::vector<std::int32_t>& cells, int sweeps) {
+    leavers_.clear();
+    for (int i = 0; i < sweeps; ++i) {
+        FaultCount count;
+        std::vector<std::int32_t> faulty;
+        for (const std::vector<std::int32_t>& found : {faults_.badCells(), faults_.poorCells(count)})
+            std::ranges::set_intersection(cells, found, std::back_inserter(faulty));
+        std::vector<Task> tasks = tasksOf(faulty);
+        if (tasks.empty() || sweep(tasks, [&](const Task& t, Worker& w) { return mendNode(t, w); }) == 0) break;
+    }
+}
+
 std::vector<Optimiser::Task> Optimiser::tasksOfCellsAt(const std::vector<std::int32_t>& faces) const {
     std::vector<std::int32_t> cells;
     for (const std::int32_t f : faces) {
@@ -199,6 +215,45 @@ void Optimiser::mendTets(int sweeps) {
     }
 }
 
+void Optimiser::moveTogether(const std::vector<NodeMove>& moves) {
+    std::vector<std::int32_t> points, seeds;
+    MeshNodes::Moved moved;
+    for (const NodeMove& m : moves) {
+        if (tracked_) tracked_->try_emplace(m.node, m.node, m.cell, nodes_.place(m.node));
+        nodes_.moveTo(m.node, m.to);
+        seeds.push_back(m.cell);
+    }
+    for (const NodeMove& m : moves) nodes_.moveTo(m.node, m.to); // front points on edges hang on others, which are where they go now
+    for (const NodeMove& m : moves) nodes_.follow(m.node, m.to, moved);
+    for (const auto& [p, x] : moved) mesh_.points[Index(p)] = x, points.push_back(p);
+    faults_.update(points, seeds);
+}
+
+void Optimiser::undo() {
+    if (!tracked_) return;
+    std::vector<NodeMove> back;
+    for (const auto& [node, from] : *tracked_) back.push_back(from);
+    tracked_.reset();
+    moveTogether(back);
+}
+
+void Optimiser::comeBack(int sweeps) {
+    if (!tracked_) return;
+    std::vector<Vec3> places(front_.front.size());
+    std::vector<Task> tasks;
+    for (const auto& [node, from] : *tracked_) {
+        if (node.kind != MeshNode::wall) continue;
+        places[Index(node.id)] = from.to;
+        tasks.push_back({node, from.cell, {}});
+    }
+    bringBack(std::move(tasks), places, sweeps);
+}
+
+void Optimiser::bringBack(std::vector<Task> tasks, const std::vector<Vec3>& places, int sweeps) {
+    for (int i = 0; i < sweeps && !tasks.empty(); ++i)
+        sweep(tasks, [&](const Task& t, Worker& w) { return bringBack(t, places[Index(t.node.id)], w); });
+}
+
 void Optimiser::mendTetsOffWall(std::vector<std::int32_t> faces, int sweeps) {
     std::vector<Vec3> places(front_.front.size());
     for (Index v = 0; v < places.size(); ++v) places[v] = front_.wall(v);
@@ -215,9 +270,7 @@ void Optimiser::mendTetsOffWall(std::vector<std::int32_t> faces, int sweeps) {
     leavers_.clear();
     std::vector<std::uint8_t> moved(places.size());
     for (Index v = 0; v < places.size(); ++v) moved[v] = !(places[v] == front_.wall(v));
-    std::vector<Task> tasks = wallTasks(moved);
-    for (int i = 0; i < backSweeps && !tasks.empty(); ++i)
-        sweep(tasks, [&](const Task& t, Worker& w) { return bringBack(t, places[Index(t.node.id)], w); });
+    bringBack(wallTasks(moved), places, backSweeps);
 }
 
 std::vector<Optimiser::Task> Optimiser::tasksOff() const {

@@ -6,6 +6,8 @@
 #include "i2b/fit/fit.h"
 #include "i2b/quality/mesh_faults.h"
 #include "i2b/quality/mesh_nodes.h"
+#include <map>
+#include <optional>
 
 namespace i2b {
 
@@ -27,12 +29,27 @@ class Optimiser {
     // The nodes of poor and wrong cells, until nothing gets better. Gives how many moves were made. mayLeave: wall nodes
     // need not stay on the geometry.
     std::int64_t mend(int sweeps, bool mayLeave = false);
+    // The same of those among these cells (ascending).
+    void mendAt(const std::vector<std::int32_t>& cells, int sweeps);
     // The nodes of faces that do not divide into tetrahedra or turn back at a corner, then all of the cells beside them, within all
     // other limits.
     void mendTets(int sweeps);
     // The same of the cells beside these faces only, where theirs at the wall may leave the geometry by up to a fifth of a cell. They come
     // back as far as that undoes nothing.
     void mendTetsOffWall(std::vector<std::int32_t> faces, int sweeps);
+    // Moves nodes wherever they are to go, all at once.
+    struct NodeMove {
+        MeshNode node;
+        std::int32_t cell = -1; // one that uses a point of the node
+        Vec3 to;                // m
+    };
+    void moveTogether(const std::vector<NodeMove>& moves);
+    // Remembers from here on which nodes move, for these two: wall nodes back towards where they were, as far as that undoes nothing; all
+    // back to where they were.
+    void track() { tracked_.emplace(); }
+    void comeBack(int sweeps);
+    void undo();
+    const MeshNodes& nodes() const { return nodes_; }
     // Columns of poor and wrong cells more or less bent.
     std::int64_t bend();
     // Nodes to the features that they should be on; those that get there are held to them.
@@ -67,6 +84,7 @@ class Optimiser {
     bool mendNodeTets(const Task& task, Worker& worker);
     double sizeAt(std::int32_t vertex) const;
     Vec3 wayToOpen(std::int32_t vertex) const;
+    void bringBack(std::vector<Task> tasks, const std::vector<Vec3>& places, int sweeps);
     bool bringBack(const Task& task, const Vec3& to, Worker& worker);
     float* bendOf(const MeshNode& wall);
     bool fitsAt(const Task& task, Worker& worker, const Vec3& to, const Badness& before);
@@ -85,6 +103,7 @@ class Optimiser {
     int layers_;          // cells of the highest stack of thin layers, which share their faults; 1 where there are none
     WallGuide guide_;
     MeshNodes nodes_;
+    std::optional<std::map<MeshNode, NodeMove>> tracked_; // where they were
 };
 
 } // namespace i2b

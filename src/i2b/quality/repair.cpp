@@ -4,6 +4,7 @@
 #include "i2b/quality/last_resort.h"
 #include "i2b/quality/mesh_faults.h"
 #include "i2b/quality/retreat.h"
+#include "i2b/quality/step_back.h"
 #include <algorithm>
 #include <limits>
 
@@ -41,7 +42,7 @@ std::vector<Vec3> wallPositions(const Front& front) {
 } // namespace
 
 RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, LayerStack& layers, double startThickness,
-                     const WallGuide& guide, const DictionaryLimits& limits) {
+                     const WallGuide& guide, const DictionaryLimits& limits, bool mayThinLeave) {
     RepairSummary summary;
     const Rows cellFaces = buildCellFaces(mesh);
     // Layers of a height that was asked for are thin on purpose: nodes off the wall would not mend them.
@@ -102,16 +103,21 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, L
         isClean();
     }
     optimiser.mendTets(tetSweeps);
-    for (int round = 0; round < offRounds; ++round) {
+    const auto facesLeft = [&] {
         std::vector<std::int32_t> undivided = faults.undividedFaces();
-        std::erase_if(undivided, [&](std::int32_t f) { return mesh.owner[static_cast<std::size_t>(f)] >= thinFrom; }); // no wall leaves the geometry for thin layers
-        if (undivided.empty()) break;
-        const std::vector<std::int32_t> left = facesBeyondHelp(mesh, cellFaces, undivided, limits, thinFrom);
-        if (left.empty()) break;
+        if (!mayThinLeave) std::erase_if(undivided, [&](std::int32_t f) { return mesh.owner[static_cast<std::size_t>(f)] >= thinFrom; });
+        return undivided.empty() ? undivided : facesBeyondHelp(mesh, cellFaces, undivided, limits, thinFrom);
+    };
+    std::vector<std::int32_t> left = facesLeft();
+    for (int round = 0; round < offRounds && !left.empty(); ++round) {
         optimiser.mendTetsOffWall(left, offSweeps);
+        left = facesLeft();
     }
+    if (!left.empty()) stepBackFrom(left, {mesh, cellFaces, faults, front, lattice, startThickness, limits}, optimiser);
     summary.poorRemaining = poor.all;
     summary.unmended = faults.poorFaces();
+    for (const std::int32_t f : faults.undividedFaces())
+        if (mesh.owner[static_cast<std::size_t>(f)] >= thinFrom) summary.foldedCells.push_back(mesh.owner[static_cast<std::size_t>(f)]);
     noteMoved();
     return summary;
 }

@@ -23,14 +23,15 @@ struct RepairSummary {
     std::int64_t poorFaces = 0;  // faces over the limits of non-orthogonality, skewness, weight or volume ratio at the
                                  // beginning, and cells of small determinant
     std::int64_t poorRemaining = 0;
+    std::vector<std::int32_t> foldedCells; // thin ones with a face that does not divide, ascending
     std::vector<std::int32_t> unmended;    // faces with any fault at the end, and those of cells with one
     std::vector<std::uint8_t> movedWalls; // per vertex of the front: its wall position was changed
 };
 
 // startThickness: what buildFront() was given. Moves points of mesh, and front positions alike; columns of layers whose
 // wall position steps back lose their bend with it. limits: what the last resort will be asked to hold; where it would not, wall nodes
-// leave the geometry a little.
+// leave the geometry a little, those under thin layers only if they may: cutting the wall under them comes first.
 RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, LayerStack& layers, double startThickness,
-                     const WallGuide& guide, const DictionaryLimits& limits);
+                     const WallGuide& guide, const DictionaryLimits& limits, bool mayThinLeave);
 
 } // namespace i2b

@@ -1,0 +1,165 @@
+#include "i2b/quality/step_back.h"
+#include "i2b/quality/last_resort.h"
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <set>
+
+namespace i2b {
+namespace {
+
+using Index = std::size_t;
+constexpr std::array<double, 5> shares{0.15, 0.3, 0.5, 0.75, 1}; // of the way to the start
+constexpr int rings = 3, looks = 7;                              // of cells that come along, that are looked at
+constexpr int most = 64;                                         // faces
+constexpr std::size_t mostMore = 2;                              // that the way back may add, for single moves to mend
+constexpr std::size_t crowded = 24;                              // faults so many around a face are not for this
+constexpr int patience = 5;                                      // places in turn where nothing helps
+constexpr int mendSweeps = 6, tetSweeps = 8, backSweeps = 3;
+
+// What a face is amid.
+struct Around {
+    std::vector<std::int32_t> cells, faces; // all that are looked at, ascending
+    std::vector<std::int32_t> near;         // cells whose nodes go back
+    std::map<MeshNode, std::pair<double, std::int32_t>> nodes; // how much of the way each goes; a cell that uses it
+};
+
+class StepBack {
+  public:
+    StepBack(const StepBackInput& in, Optimiser& optimiser) : in_(in), optimiser_(optimiser), start_(in.lattice.latticePoints()) {
+        poorBefore_ = poor();
+    }
+
+    enum class Outcome { nothingToDo, mended, failed };
+    // Mended where there is one face less that nothing helps.
+    Outcome mend(const Around& around) {
+        if (isCrowded(around)) return Outcome::failed;
+        const std::vector<std::int32_t> before = beyondHelp(around);
+        if (before.empty()) return Outcome::nothingToDo; // what was done for another has done it
+        const auto isLess = [&](const Left& left) { return left && left->size() < before.size(); };
+        for (const double share : shares) {
+            optimiser_.track();
+            optimiser_.moveTogether(movesOf(around, share));
+            if (isLess(mended(around, before.size()))) {
+                optimiser_.comeBack(backSweeps);
+                if (isLess(look(around))) return Outcome::mended;
+            }
+            optimiser_.undo();
+        }
+        return Outcome::failed;
+    }
+
+    Around aroundAt(std::int32_t face) const {
+        Around around;
+        std::vector<std::int32_t> cells{in_.mesh.owner[Index(face)]};
+        if (face < in_.mesh.internalFaces()) cells.push_back(in_.mesh.neighbour[Index(face)]);
+        std::set<std::int32_t> seen(cells.begin(), cells.end());
+        std::vector<MeshNode> nodes;
+        for (int ring = 0; ring < looks; ++ring) {
+            std::vector<std::int32_t> next;
+            for (const std::int32_t c : cells) {
+                for (const std::int32_t f : in_.cellFaces[c]) {
+                    around.faces.push_back(f);
+                    nodes.clear();
+                    for (const std::int32_t p : in_.mesh.face(f))
+                        if (ring < rings) optimiser_.nodes().nodesOf(p, nodes);
+                    for (const MeshNode& n : nodes) around.nodes.try_emplace(n, 1 - double(ring) / rings, c); // nearer rings come first
+                    if (f >= in_.mesh.internalFaces()) continue;
+                    for (const std::int32_t other : {in_.mesh.owner[Index(f)], in_.mesh.neighbour[Index(f)]}) {
+                        if (seen.insert(other).second) next.push_back(other);
+                    }
+                }
+            }
+            if (ring < rings) around.near.insert(around.near.end(), cells.begin(), cells.end());
+            cells = std::move(next);
+        }
+        around.cells.assign(seen.begin(), seen.end());
+        std::sort(around.faces.begin(), around.faces.end());
+        around.faces.erase(std::unique(around.faces.begin(), around.faces.end()), around.faces.end());
+        return around;
+    }
+
+    bool isCrowded(const Around& around) const { return undivided(around).size() > crowded; }
+  private:
+    Vec3 wallStart(Index vertex) const {
+        const Front& front = in_.front;
+        if (vertex < front.firstInserted()) {
+            const std::array<std::int8_t, 3>& d = front.direction[vertex];
+            return start_[Index(front.corePoint[vertex])] + Vec3{double(d[0]), double(d[1]), double(d[2])} * (in_.startThickness * front.h[vertex]);
+        }
+        const Front::Inserted& i = front.inserted[vertex - front.firstInserted()];
+        const Vec3 a = wallStart(Index(i.ends[0])), b = wallStart(Index(i.ends[1]));
+        return a + (b - a) * i.t;
+    }
+    Vec3 startOf(const MeshNode& node) const {
+        if (node.kind == MeshNode::wall) return wallStart(Index(node.id));
+        return start_[Index(node.kind == MeshNode::core ? in_.front.movedPoints[Index(node.id)] : node.id)];
+    }
+    std::vector<Optimiser::NodeMove> movesOf(const Around& around, double share) const {
+        std::vector<Optimiser::NodeMove> moves;
+        for (const auto& [node, weight] : around.nodes) {
+            const Vec3 from = optimiser_.nodes().place(node);
+            moves.push_back({node, weight.second, from + (startOf(node) - from) * (share * weight.first)});
+        }
+        return moves;
+    }
+    std::int64_t poor() const {
+        FaultCount count;
+        in_.faults.poorCells(count);
+        return count.all;
+    }
+    std::vector<std::int32_t> undivided(const Around& around) const {
+        std::vector<std::int32_t> faces;
+        std::ranges::set_intersection(around.faces, in_.faults.undividedFaces(), std::back_inserter(faces));
+        return faces;
+    }
+    std::vector<std::int32_t> beyondHelp(const Around& around) const {
+        return facesBeyondHelp(in_.mesh, in_.cellFaces, undivided(around), in_.limits, in_.faults.thinFrom());
+    }
+    // The faces that nothing helps; none where other faults have come or many of these.
+    using Left = std::optional<std::vector<std::int32_t>>;
+    Left look(const Around& around) const {
+        if (isCrowded(around) || !in_.faults.badCells().empty() || poor() > poorBefore_) return {};
+        return beyondHelp(around);
+    }
+    // Single moves until there are less than that many; what is left then.
+    Left mended(const Around& around, std::size_t before) {
+        if (isCrowded(around) || poor() > poorBefore_ + std::int64_t(crowded) || in_.faults.badCells().size() > crowded) return {};
+        Left left = look(around);
+        if (!left) {
+            optimiser_.mendAt(around.cells, mendSweeps);
+            left = look(around);
+        }
+        if (!left || left->size() < before || left->size() > before + mostMore) return left;
+        optimiser_.mendTetsOffWall(*left, tetSweeps);
+        return look(around);
+    }
+
+    const StepBackInput& in_;
+    Optimiser& optimiser_;
+    std::vector<Vec3> start_; // per core point
+    std::int64_t poorBefore_ = 0;
+};
+
+} // namespace
+
+std::int64_t stepBackFrom(const std::vector<std::int32_t>& faces, const StepBackInput& in, Optimiser& optimiser) {
+    StepBack back(in, optimiser);
+    std::int64_t mended = 0;
+    int failed = 0, tried = 0;
+    std::set<std::int32_t> hopeless; // cells where it has not helped
+    for (Index i = 0; i < faces.size() && tried < most && failed < patience; ++i) {
+        if (hopeless.contains(in.mesh.owner[Index(faces[i])])) continue; // the layers of a column have their faults together
+        const Around around = back.aroundAt(faces[i]);
+        const StepBack::Outcome outcome = back.mend(around);
+        ++tried;
+        if (outcome == StepBack::Outcome::mended) ++mended, failed = 0;
+        if (outcome != StepBack::Outcome::failed) continue;
+        ++failed;
+        hopeless.insert(around.near.begin(), around.near.end());
+    }
+    return mended;
+}
+
+} // namespace i2b
