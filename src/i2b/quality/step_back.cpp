@@ -10,11 +10,11 @@ namespace i2b {
 namespace {
 
 using Index = std::size_t;
-constexpr std::array<double, 5> shares{0.15, 0.3, 0.5, 0.75, 1}; // of the way to the start
+constexpr std::array<double, 8> shares{0.08, 0.15, 0.22, 0.3, 0.4, 0.5, 0.75, 1}; // of the way to the start
 constexpr int rings = 3, looks = 7;                              // of cells that come along, that are looked at
 constexpr int most = 64;                                         // faces
 constexpr std::size_t mostMore = 2;                              // that the way back may add, for single moves to mend
-constexpr std::size_t crowded = 24;                              // faults so many around a face are not for this
+constexpr std::size_t crowded = 40;                              // faults so many around a face are not for this
 constexpr int patience = 5;                                      // places in turn where nothing helps
 constexpr int mendSweeps = 6, tetSweeps = 8, backSweeps = 3;
 
