@@ -9,6 +9,7 @@ namespace i2b {
 namespace {
 
 constexpr int mostCuts = 4;   // rounds of cutting walls under cells that cannot be made valid
+constexpr std::size_t mostFolded = 2000; // thin cells: where more are, their height asks for it
 constexpr int mostTries = 3;  // further ones, without cuts of the fit around such cells
 constexpr int wrongRings = 3; // of cells around them
 
@@ -35,7 +36,8 @@ RepairSummary assembleAndRepair(const WallInput& in, Walls& walls, PolyMesh& mes
             };
             const auto core = static_cast<std::int32_t>(in.lattice.cellCount());
             RepairSummary r = repaired(false);
-            for (int round = 0; (r.remaining > 0 || !r.foldedCells.empty()) && round < mostCuts; ++round) {
+            const auto isFolded = [&] { return !r.foldedCells.empty() && r.foldedCells.size() <= mostFolded; };
+            for (int round = 0; (r.remaining > 0 || isFolded()) && round < mostCuts; ++round) {
                 const bool wasWrong = r.remaining > 0;
                 const std::vector<std::uint8_t> moved = std::move(r.movedWalls);
                 if (cutUnderWrong(walls.front, layers, in.plans, *c.index, core, wasWrong ? r.wrongCells : r.foldedCells)) mesh = assemble(parts);

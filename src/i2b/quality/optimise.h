@@ -44,10 +44,11 @@ class Optimiser {
         Vec3 to;                // m
     };
     void moveTogether(const std::vector<NodeMove>& moves);
-    // Remembers from here on which nodes move, for these two: wall nodes back towards where they were, as far as that undoes nothing; all
-    // back to where they were.
+    // Remembers from here on which nodes move, until they stay where they are or go back to where they were. comeBack() brings those of
+    // the wall as far back as that undoes nothing.
     void track() { tracked_.emplace(); }
     void comeBack(int sweeps);
+    void keep() { tracked_.reset(); }
     void undo();
     const MeshNodes& nodes() const { return nodes_; }
     // Columns of poor and wrong cells more or less bent.

@@ -43,7 +43,10 @@ class StepBack {
             optimiser_.moveTogether(movesOf(around, share));
             if (isLess(mended(around, before.size()))) {
                 optimiser_.comeBack(backSweeps);
-                if (isLess(look(around))) return Outcome::mended;
+                if (isLess(look(around))) {
+                    optimiser_.keep();
+                    return Outcome::mended;
+                }
             }
             optimiser_.undo();
         }
