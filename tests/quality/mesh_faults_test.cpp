@@ -1,6 +1,8 @@
 #include "i2b/quality/mesh_faults.h"
+#include "quality/cell_mesh.h"
 #include "quality/shaken_block.h"
 #include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <random>
 #include <set>
@@ -141,6 +143,34 @@ TEST(MeshFaults, UndividedFacesAreTheReports) {
     }
     EXPECT_GT(tets, 50);
     EXPECT_GT(twisted, 50);
+}
+
+// Columns of two cells, thin and narrow, where two shares that are each well enough leave tetrahedra of no quality: such faces
+// are named where that quality is asked for, and few others.
+TEST(MeshFaults, TetrahedraOfNoQualityAreNamed) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> off(-0.4, 0.4), power(-1.5, 0);
+    QualityLimits asked;
+    asked.tetQuality = 1e-15;
+    int poor = 0, onlyIfAsked = 0;
+    for (int i = 0; i < 20000; ++i) {
+        std::vector<std::array<Vec3, 4>> levels{test::square(0), test::square(1), test::square(2)};
+        const Vec3 scale{1, 0.03 * std::pow(10, power(random)), 0.03 * std::pow(10, power(random))};
+        for (auto& level : levels)
+            for (Vec3& p : level) p = {p.x + off(random), (p.y + off(random)) * scale.y, (p.z + off(random)) * scale.z};
+        const PolyMesh mesh = test::columnOf(levels);
+        const Rows cellFaces = buildCellFaces(mesh);
+        const std::vector<std::int32_t> named = MeshFaults(mesh, cellFaces, asked).undividedFaces(), others = MeshFaults(mesh, cellFaces, {}).undividedFaces();
+        EXPECT_TRUE(std::ranges::includes(named, others)) << "column " << i;
+        const QualityReport report = measureQuality(mesh);
+        const auto tets = std::ranges::find(report.dictionary, "minTetQuality", &DictionaryCheck::key);
+        ASSERT_NE(tets, report.dictionary.end());
+        EXPECT_GE(static_cast<std::int64_t>(named.size()), tets->faces) << "column " << i;
+        poor += tets->faces > 0, onlyIfAsked += named.size() > others.size();
+        if (named.size() > others.size()) { EXPECT_GT(tets->faces, 0) << "column " << i; }
+    }
+    EXPECT_GT(poor, 500);
+    EXPECT_GT(onlyIfAsked, 10);
 }
 
 } // namespace

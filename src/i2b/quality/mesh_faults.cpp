@@ -15,6 +15,7 @@ namespace {
 
 using Index = std::size_t;
 constexpr double flat = 1e-9; // a pyramid below this part of its cell's size counts as wrong
+constexpr double doubtful = 2 * undividedShare; // of tetrahedra: up to there their quality is looked at
 constexpr double mostThin = 0.02; // faces for each thin cell that may have a fault of one kind for it to count
 
 bool isBad(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::span<const FaceShape> shapes, std::int32_t cell,
@@ -47,7 +48,7 @@ void forFlagged(const std::vector<std::uint8_t>& flags, const F& f) {
 
 MeshFaults::MeshFaults(const PolyMesh& mesh, const Rows& cellFaces, const QualityLimits& limits, std::int32_t thinFrom)
     : mesh_(mesh), cellFaces_(cellFaces), limits_(limits), thinFrom_(thinFrom),
-      severeCosine_(std::cos(limits.nonOrthogonality * std::numbers::pi / 180)), moments_(Index(mesh.cells)),
+      severeCosine_(std::cos(limits.nonOrthogonality * std::numbers::pi / 180)), tets_(limits.tetQuality), moments_(Index(mesh.cells)),
       cellFlags_(Index(mesh.cells), 0), faceFlags_(Index(mesh.faces()), 0), moved_(mesh.points.size(), 0),
       changed_(Index(mesh.cells), 0) {
     measureCells();
@@ -85,8 +86,8 @@ void MeshFaults::measureFaces() {
     QuadBounds bounds = openQuadBounds;
     bounds.cosine = severeCosine_, bounds.weight = limits_.faceWeight, bounds.ratio = limits_.volumeRatio, bounds.skewness = limits_.skewness;
     bounds.pyramid3 = std::max(0.0, 3 * limits_.pyramidVolume * margin);
-    bounds.tetShape = margin * undividedShare * undividedShare / 4;
-    bounds.twist = leastTwist + undividedShare;
+    bounds.tetShape = margin * doubtful * doubtful / 4;
+    bounds.twist = leastTwist + doubtful;
     parallelChunks(faceFlags_.size(), 4096, [&](Index begin, Index end, Index) {
         QuadGlance quads(mesh_, moments_.data(), bounds);
         const auto closely = [&](Index f) { measureFaceAt(static_cast<std::int32_t>(f)); };
@@ -134,9 +135,12 @@ void MeshFaults::measureFaceAt(std::int32_t face) {
                 (values.ratio < limits_.volumeRatio ? lowRatio : 0);
     }
     if (faceSkewness(mesh_, face, shape, own.centre, neighbour, limits_.skewness) > limits_.skewness) flags |= skew;
-    if (tetShare(mesh_, face, shape.centre, shape.area, own.centre, neighbour, undividedShare) < undividedShare ||
-        pyramidShare(shape, own.centre, neighbour, limits_.pyramidVolume) < 0)
-        flags |= undivided;
+    const double share = tetShare(mesh_, face, shape.centre, shape.area, own.centre, neighbour, doubtful);
+    // Two things that are each well enough may leave tetrahedra of no quality.
+    const auto isPoor = [&] {
+        return limits_.tetQuality > 0 && share < doubtful && tetErrors(mesh_, mesh_.face(face), shape.centre, own.centre, neighbour, tets_) > 0;
+    };
+    if (share < undividedShare || pyramidShare(shape, own.centre, neighbour, limits_.pyramidVolume) < 0 || isPoor()) flags |= undivided;
     faceFlags_[Index(face)] = static_cast<std::uint8_t>(flags);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include "i2b/quality/mesh_geometry.h"
 #include "i2b/quality/quality_report.h"
+#include "i2b/quality/tet_quality.h"
 #include <limits>
 
 namespace i2b {
@@ -58,6 +59,7 @@ class MeshFaults {
     QualityLimits limits_;
     std::int32_t thinFrom_;
     double severeCosine_;
+    TetTolerance tets_;
     RawVector<CellMoments> moments_;
     std::vector<std::uint8_t> cellFlags_, faceFlags_;
     int thinFlags_ = 0xff; // of faces among thin cells: what counts

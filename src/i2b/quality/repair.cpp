@@ -29,6 +29,7 @@ QualityLimits strictLimits(const DictionaryLimits& asked) {
     limits.faceWeight = 1.1 * std::max(limits.faceWeight, bounds.faceWeight);
     limits.volumeRatio = 2 * std::max(limits.volumeRatio, bounds.volumeRatio);
     limits.determinant = 1.5 * std::max(limits.determinant, bounds.determinant);
+    limits.tetQuality = 1.5 * std::max(0.0, bounds.tetQuality);
     if (asked.pyramidVolume > 0) limits.pyramidVolume = 1.05 * asked.pyramidVolume;
     return limits;
 }

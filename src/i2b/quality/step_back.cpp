@@ -11,7 +11,8 @@ namespace {
 
 using Index = std::size_t;
 constexpr std::array<double, 8> shares{0.08, 0.15, 0.22, 0.3, 0.4, 0.5, 0.75, 1}; // of the way to the start
-constexpr int rings = 3, looks = 7;                              // of cells that come along, that are looked at
+constexpr std::array<int, 2> ringsTried{3, 5};                   // of cells that come along
+constexpr int looks = 7;                                         // that are looked at
 constexpr int most = 64;                                         // faces
 constexpr std::size_t mostMore = 2;                              // that the way back may add, for single moves to mend
 constexpr std::size_t crowded = 40;                              // faults so many around a face are not for this
@@ -31,10 +32,10 @@ class StepBack {
         poorBefore_ = poor();
     }
 
-    enum class Outcome { nothingToDo, mended, failed };
+    enum class Outcome { nothingToDo, mended, failed, crowded };
     // Mended where there is one face less that nothing helps.
     Outcome mend(const Around& around) {
-        if (isCrowded(around)) return Outcome::failed;
+        if (isCrowded(around)) return Outcome::crowded;
         const std::vector<std::int32_t> before = beyondHelp(around);
         if (before.empty()) return Outcome::nothingToDo; // what was done for another has done it
         const auto isLess = [&](const Left& left) { return left && left->size() < before.size(); };
@@ -53,7 +54,7 @@ class StepBack {
         return Outcome::failed;
     }
 
-    Around aroundAt(std::int32_t face) const {
+    Around aroundAt(std::int32_t face, int rings) const {
         Around around;
         std::vector<std::int32_t> cells{in_.mesh.owner[Index(face)]};
         if (face < in_.mesh.internalFaces()) cells.push_back(in_.mesh.neighbour[Index(face)]);
@@ -83,8 +84,8 @@ class StepBack {
         return around;
     }
 
-    bool isCrowded(const Around& around) const { return undivided(around).size() > crowded; }
   private:
+    bool isCrowded(const Around& around) const { return undivided(around).size() > crowded; }
     Vec3 wallStart(Index vertex) const {
         const Front& front = in_.front;
         if (vertex < front.firstInserted()) {
@@ -148,19 +149,24 @@ class StepBack {
 } // namespace
 
 std::int64_t stepBackFrom(const std::vector<std::int32_t>& faces, const StepBackInput& in, Optimiser& optimiser) {
+    using Outcome = StepBack::Outcome;
     StepBack back(in, optimiser);
     std::int64_t mended = 0;
     int failed = 0, tried = 0;
     std::set<std::int32_t> hopeless; // cells where it has not helped
     for (Index i = 0; i < faces.size() && tried < most && failed < patience; ++i) {
         if (hopeless.contains(in.mesh.owner[Index(faces[i])])) continue; // the layers of a column have their faults together
-        const Around around = back.aroundAt(faces[i]);
-        const StepBack::Outcome outcome = back.mend(around);
-        ++tried;
-        if (outcome == StepBack::Outcome::mended) ++mended, failed = 0;
-        if (outcome != StepBack::Outcome::failed) continue;
-        ++failed;
-        hopeless.insert(around.near.begin(), around.near.end());
+        Outcome outcome = Outcome::failed;
+        std::vector<std::int32_t> near;
+        for (std::size_t k = 0; k < ringsTried.size() && outcome == Outcome::failed; ++k) {
+            Around around = back.aroundAt(faces[i], ringsTried[k]);
+            outcome = back.mend(around);
+            if (k == 0) near = std::move(around.near);
+        }
+        tried += outcome != Outcome::crowded;
+        if (outcome == Outcome::mended) ++mended, failed = 0;
+        if (outcome == Outcome::failed) ++failed;
+        if (outcome == Outcome::failed || outcome == Outcome::crowded) hopeless.insert(near.begin(), near.end());
     }
     return mended;
 }
