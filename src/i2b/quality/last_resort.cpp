@@ -12,7 +12,8 @@ namespace i2b {
 namespace {
 
 using Index = std::size_t;
-constexpr int mostRounds = 16;
+constexpr int mostRounds = 16, mostOrders = 4;
+constexpr std::size_t fewFaces = 2000;  // to be helped: other orders are tried
 constexpr std::size_t mostCells = 4;    // of a group
 constexpr std::size_t mostThinCells = 16; // the same of layers in a column
 constexpr std::size_t mostFlat = 200;    // thin cells of a small determinant
@@ -300,12 +301,9 @@ void seekChanges(const PolyMesh& mesh, std::vector<std::int32_t> faces, const Di
     }
 }
 
-} // namespace
-
-std::vector<std::int32_t> facesBeyondHelp(const PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::int32_t>& poorFaces,
-                                          const DictionaryLimits& limits, std::int32_t thinFrom) {
-    LocalEdits edits(mesh, cellFaces);
-    seekChanges(mesh, poorFaces, limits, thinFrom, edits, nullptr);
+// Of the faces, ascending, those that are still beyond limits, or beside one that is.
+std::vector<std::int32_t> facesLeft(const PolyMesh& mesh, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits,
+                                    const LocalEdits& edits) {
     std::vector<std::uint8_t> left(poorFaces.size(), 0);
     parallelFor(left.size(), [&](Index i) {
         const std::int32_t face = poorFaces[i], own = edits.of(mesh.owner[Index(face)]);
@@ -319,6 +317,40 @@ std::vector<std::int32_t> facesBeyondHelp(const PolyMesh& mesh, const Rows& cell
     return faces;
 }
 
+struct Edited {
+    LocalEdits edits;
+    std::vector<Vec3> places;
+    std::vector<std::int32_t> left; // faces that nothing has helped
+};
+
+// A change may be in the way of what would help another face: where few are left, all is done anew with these first.
+Edited seekInOrders(const PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::int32_t>& faces, const DictionaryLimits& limits,
+                    std::int32_t thinFrom) {
+    std::optional<Edited> best;
+    std::vector<std::int32_t> first;
+    for (int order = 0; order < mostOrders; ++order) {
+        Edited now{LocalEdits(mesh, cellFaces), {}, {}};
+        seekChanges(mesh, first, limits, thinFrom, now.edits, &now.places);
+        seekChanges(mesh, faces, limits, thinFrom, now.edits, &now.places);
+        if (faces.size() <= fewFaces) now.left = facesLeft(mesh, faces, limits, now.edits);
+        std::vector<std::int32_t> next;
+        std::ranges::set_union(first, now.left, std::back_inserter(next));
+        const bool isLast = next.size() == first.size();
+        first = std::move(next);
+        if (!best || now.left.size() < best->left.size()) best.emplace(std::move(now));
+        if (isLast) break;
+    }
+    return std::move(*best);
+}
+
+} // namespace
+
+std::vector<std::int32_t> facesBeyondHelp(const PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::int32_t>& poorFaces,
+                                          const DictionaryLimits& limits, std::int32_t thinFrom) {
+    LocalEdits edits(mesh, cellFaces);
+    seekChanges(mesh, poorFaces, limits, thinFrom, edits, nullptr);
+    return facesLeft(mesh, poorFaces, limits, edits);
+}
 LastResort changePoorPlaces(PolyMesh& mesh, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits, std::int32_t thinFrom) {
     LastResort summary;
     std::vector<std::int32_t> faces, concave;
@@ -335,8 +367,9 @@ LastResort changePoorPlaces(PolyMesh& mesh, const std::vector<std::int32_t>& poo
         std::ranges::set_union(poor, facesOfFlatCells(mesh, cellFaces, thinFrom, limits.determinant), std::back_inserter(faces));
     }
     if (faces.empty()) return summary;
-    LocalEdits edits(mesh, cellFaces);
-    seekChanges(mesh, faces, limits, thinFrom, edits, &summary.changes.places);
+    Edited edited = seekInOrders(mesh, cellFaces, faces, limits, thinFrom);
+    const LocalEdits& edits = edited.edits;
+    summary.changes.places = std::move(edited.places);
     summary.changes.merged = edits.united(), summary.changes.divided = edits.divided();
     if (summary.changes.merged + summary.changes.divided == 0) return summary;
     const MeshEdits all = edits.edits();

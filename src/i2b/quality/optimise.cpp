@@ -35,7 +35,7 @@ std::vector<Optimiser::Task> Optimiser::asTasks(std::vector<std::pair<MeshNode, 
     std::sort(found.begin(), found.end());
     std::vector<Task> tasks;
     for (const auto& [node, cell] : found) {
-        if (tasks.empty() || tasks.back().node != node) tasks.push_back({node, cell, {}});
+        if (tasks.empty() || tasks.back().node != node) tasks.push_back({node, cell, {}, {}});
     }
     return tasks;
 }
@@ -89,34 +89,37 @@ class CellRanks {
 
 } // namespace
 
+// The cells that a task changes and those beyond their faces, ascending.
+void Optimiser::findCells(Task& task, Worker& worker) const {
+    task.cells = worker.cellsOf(task);
+    task.reads.clear();
+    for (const std::int32_t c : task.cells) {
+        task.reads.push_back(c);
+        for (const std::int32_t f : cellFaces_[c]) {
+            if (f < mesh_.internalFaces()) task.reads.push_back(mesh_.owner[Index(f)] == c ? mesh_.neighbour[Index(f)] : mesh_.owner[Index(f)]);
+        }
+    }
+    std::sort(task.reads.begin(), task.reads.end());
+    task.reads.erase(std::unique(task.reads.begin(), task.reads.end()), task.reads.end());
+}
+
 // Groups of tasks that may go at once: no cell that one changes is read by another. Those beyond 64 colours wait for
 // the next sweep.
 std::vector<std::vector<std::uint32_t>> Optimiser::colour(const std::vector<Task>& tasks) const {
-    std::vector<std::vector<std::int32_t>> reads(tasks.size());
-    parallelFor(tasks.size(), [&](Index t) {
-        for (const std::int32_t c : tasks[t].cells) {
-            reads[t].push_back(c);
-            for (const std::int32_t f : cellFaces_[c]) {
-                if (f < mesh_.internalFaces()) reads[t].push_back(mesh_.owner[Index(f)] == c ? mesh_.neighbour[Index(f)] : mesh_.owner[Index(f)]);
-            }
-        }
-        std::sort(reads[t].begin(), reads[t].end());
-        reads[t].erase(std::unique(reads[t].begin(), reads[t].end()), reads[t].end());
-    }, 16);
     CellRanks ranks(mesh_.cells);
-    for (const auto& r : reads)
-        for (const std::int32_t c : r) ranks.add(c);
+    for (const Task& task : tasks)
+        for (const std::int32_t c : task.reads) ranks.add(c);
     struct Masks { std::uint64_t read = 0, changed = 0; };
     std::vector<Masks> masks(ranks.count());
     std::vector<std::vector<std::uint32_t>> groups;
     for (Index t = 0; t < tasks.size(); ++t) {
         std::uint64_t taken = 0;
         for (const std::int32_t c : tasks[t].cells) taken |= masks[ranks.rank(c)].read;
-        for (const std::int32_t c : reads[t]) taken |= masks[ranks.rank(c)].changed;
+        for (const std::int32_t c : tasks[t].reads) taken |= masks[ranks.rank(c)].changed;
         const int free = std::countr_one(taken);
         if (free == 64) continue;
         for (const std::int32_t c : tasks[t].cells) masks[ranks.rank(c)].changed |= std::uint64_t(1) << free;
-        for (const std::int32_t c : reads[t]) masks[ranks.rank(c)].read |= std::uint64_t(1) << free;
+        for (const std::int32_t c : tasks[t].reads) masks[ranks.rank(c)].read |= std::uint64_t(1) << free;
         if (groups.size() <= Index(free)) groups.resize(Index(free) + 1);
         groups[Index(free)].push_back(static_cast<std::uint32_t>(t));
     }
@@ -124,11 +127,22 @@ std::vector<std::vector<std::uint32_t>> Optimiser::colour(const std::vector<Task
 }
 
 template <class Move>
-std::int64_t Optimiser::sweep(std::vector<Task>& tasks, const Move& move) {
+std::int64_t Optimiser::sweep(std::vector<Task>& tasks, const Move& move, RestingNodes* resting) {
+    std::vector<std::uint8_t> rests(tasks.size(), 0);
     parallelChunks(tasks.size(), 32, [&](Index begin, Index end, Index) {
         Worker worker(*this);
-        for (Index t = begin; t < end; ++t) tasks[t].cells = worker.cellsOf(tasks[t]);
+        for (Index t = begin; t < end; ++t) {
+            findCells(tasks[t], worker);
+            rests[t] = resting && resting->has(tasks[t].node, tasks[t].reads);
+        }
     });
+    Index left = 0;
+    for (Index t = 0; t < tasks.size(); ++t) {
+        if (rests[t]) continue;
+        if (left != t) tasks[left] = std::move(tasks[t]);
+        ++left;
+    }
+    tasks.resize(left);
     std::int64_t moves = 0;
     for (const std::vector<std::uint32_t>& group : colour(tasks)) {
         std::vector<std::uint8_t> hasMoved(group.size(), 0);
@@ -142,15 +156,18 @@ std::int64_t Optimiser::sweep(std::vector<Task>& tasks, const Move& move) {
         std::vector<std::int32_t> points, seeds;
         MeshNodes::Moved moved;
         for (Index i = 0; i < group.size(); ++i) {
+            const Task& task = tasks[group[i]];
+            if (resting && !hasMoved[i]) resting->stays(task.node);
             if (!hasMoved[i]) continue;
             ++moves;
-            const Task& task = tasks[group[i]];
+            if (resting) resting->moves(task.cells);
             if (tracked_) tracked_->try_emplace(task.node, task.node, task.cell, from[i]);
             moved.clear();
             nodes_.follow(task.node, nodes_.place(task.node), moved);
             for (const auto& [p, x] : moved) points.push_back(p);
             seeds.insert(seeds.end(), task.cells.begin(), task.cells.end());
         }
+        if (resting) resting->next();
         faults_.update(points, seeds);
     }
     return moves;
@@ -159,6 +176,7 @@ std::int64_t Optimiser::sweep(std::vector<Task>& tasks, const Move& move) {
 std::int64_t Optimiser::mend(int sweeps, bool mayLeave) {
     leavers_.assign(mayLeave ? front_.front.size() : 0, 1);
     std::int64_t moves = 0, before = 0, patientFrom = 0;
+    RestingNodes resting;
     for (int i = 0; i < sweeps; ++i) {
         FaultCount count;
         std::vector<std::int32_t> cells = faults_.badCells();
@@ -171,7 +189,7 @@ std::int64_t Optimiser::mend(int sweeps, bool mayLeave) {
         before = count.all;
         cells.insert(cells.end(), poor.begin(), poor.end());
         std::vector<Task> tasks = tasksOf(cells);
-        const std::int64_t now = sweep(tasks, [&](const Task& t, Worker& w) { return mendNode(t, w); });
+        const std::int64_t now = sweep(tasks, [&](const Task& t, Worker& w) { return mendNode(t, w); }, &resting);
         moves += now;
         if (now == 0) break;
     }
@@ -180,13 +198,14 @@ std::int64_t Optimiser::mend(int sweeps, bool mayLeave) {
 
 void Optimiser::mendAt(const std::vector<std::int32_t>& cells, int sweeps) {
     leavers_.clear();
+    RestingNodes resting;
     for (int i = 0; i < sweeps; ++i) {
         FaultCount count;
         std::vector<std::int32_t> faulty;
         for (const std::vector<std::int32_t>& found : {faults_.badCells(), faults_.poorCells(count)})
             std::ranges::set_intersection(cells, found, std::back_inserter(faulty));
         std::vector<Task> tasks = tasksOf(faulty);
-        if (tasks.empty() || sweep(tasks, [&](const Task& t, Worker& w) { return mendNode(t, w); }) == 0) break;
+        if (tasks.empty() || sweep(tasks, [&](const Task& t, Worker& w) { return mendNode(t, w); }, &resting) == 0) break;
     }
 }
 
@@ -204,10 +223,11 @@ std::vector<Optimiser::Task> Optimiser::tasksOfCellsAt(const std::vector<std::in
 void Optimiser::mendTets(int sweeps) {
     leavers_.clear();
     std::vector<std::int32_t> faces = faults_.undividedFaces();
+    RestingNodes resting;
     for (const bool wide : {false, true}) {
         for (int i = 0; i < sweeps && !faces.empty(); ++i) {
             std::vector<Task> tasks = wide ? tasksOfCellsAt(faces) : tasksOfFaces(faces);
-            const std::int64_t moves = sweep(tasks, [&](const Task& t, Worker& w) { return mendNodeTets(t, w); });
+            const std::int64_t moves = sweep(tasks, [&](const Task& t, Worker& w) { return mendNodeTets(t, w); }, &resting);
             const auto before = static_cast<double>(faces.size());
             faces = faults_.undividedFaces();
             if (moves == 0 || (faces.size() > few && static_cast<double>(faces.size()) > stalled * before)) break;
@@ -237,6 +257,13 @@ void Optimiser::undo() {
     moveTogether(back);
 }
 
+std::vector<Optimiser::NodeMove> Optimiser::trackedPlaces() const {
+    std::vector<NodeMove> places;
+    if (!tracked_) return places;
+    for (const auto& [node, from] : *tracked_) places.push_back({node, from.cell, nodes_.place(node)});
+    return places;
+}
+
 void Optimiser::comeBack(int sweeps) {
     if (!tracked_) return;
     std::vector<Vec3> places(front_.front.size());
@@ -244,7 +271,7 @@ void Optimiser::comeBack(int sweeps) {
     for (const auto& [node, from] : *tracked_) {
         if (node.kind != MeshNode::wall) continue;
         places[Index(node.id)] = from.to;
-        tasks.push_back({node, from.cell, {}});
+        tasks.push_back({node, from.cell, {}, {}});
     }
     bringBack(std::move(tasks), places, sweeps);
 }
@@ -260,9 +287,10 @@ void Optimiser::mendTetsOffWall(std::vector<std::int32_t> faces, int sweeps) {
     leavers_.assign(front_.front.size(), 0);
     for (const Task& t : tasksOfFaces(faces))
         if (t.node.kind == MeshNode::wall) leavers_[Index(t.node.id)] = 1;
+    RestingNodes resting;
     for (int i = 0; i < sweeps && !faces.empty(); ++i) {
         std::vector<Task> tasks = tasksOfCellsAt(faces);
-        if (sweep(tasks, [&](const Task& t, Worker& w) { return mendNodeTets(t, w); }) == 0) break;
+        if (sweep(tasks, [&](const Task& t, Worker& w) { return mendNodeTets(t, w); }, &resting) == 0) break;
         std::vector<std::int32_t> left;
         std::ranges::set_intersection(faces, faults_.undividedFaces(), std::back_inserter(left));
         faces = std::move(left);
@@ -297,7 +325,7 @@ std::vector<Optimiser::Task> Optimiser::wallTasks(const std::vector<std::uint8_t
     }
     std::vector<Task> tasks;
     for (Index v = 0; v < walls; ++v) {
-        if (cellOf[v] >= 0) tasks.push_back({{MeshNode::wall, static_cast<std::int32_t>(v)}, cellOf[v], {}});
+        if (cellOf[v] >= 0) tasks.push_back({{MeshNode::wall, static_cast<std::int32_t>(v)}, cellOf[v], {}, {}});
     }
     return tasks;
 }

@@ -6,6 +6,7 @@
 #include "i2b/fit/fit.h"
 #include "i2b/quality/mesh_faults.h"
 #include "i2b/quality/mesh_nodes.h"
+#include "i2b/quality/resting_nodes.h"
 #include <map>
 #include <optional>
 
@@ -48,6 +49,7 @@ class Optimiser {
     // the wall as far back as that undoes nothing.
     void track() { tracked_.emplace(); }
     void comeBack(int sweeps);
+    std::vector<NodeMove> trackedPlaces() const; // where those are that have moved
     void keep() { tracked_.reset(); }
     void undo();
     const MeshNodes& nodes() const { return nodes_; }
@@ -63,6 +65,7 @@ class Optimiser {
         MeshNode node;
         std::int32_t cell = -1;             // one that uses a point of the node
         std::vector<std::int32_t> cells;    // all that do, ascending
+        std::vector<std::int32_t> reads;    // these and those beyond their faces: what a move is judged by
     };
     struct Worker;
     std::vector<Task> tasksOf(const std::vector<std::int32_t>& cells) const;
@@ -73,7 +76,8 @@ class Optimiser {
     std::vector<std::vector<std::uint32_t>> colour(const std::vector<Task>& tasks) const;
     std::vector<Task> tasksOfCellsAt(const std::vector<std::int32_t>& faces) const;
     template <class Move>
-    std::int64_t sweep(std::vector<Task>& tasks, const Move& move);
+    std::int64_t sweep(std::vector<Task>& tasks, const Move& move, RestingNodes* resting = nullptr); // asks none of those, and notes further ones
+    void findCells(Task& task, Worker& worker) const;
     bool isFree(const MeshNode& node, const Vec3& to) const;
     bool keepsFolds(const MeshNode& node, const Vec3& to) const;
     bool isHeld(const MeshNode& wall) const;

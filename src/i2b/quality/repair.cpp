@@ -18,7 +18,7 @@ constexpr int bendRounds = 3, thinPause = 4; // of columns bent anew, with sweep
 constexpr int thinSweeps = 24;    // of thin layers: all of a column move as one
 constexpr int wishSweeps = 2;
 constexpr int pullSweeps = 3;
-constexpr int tetSweeps = 8, offSweeps = 16, offRounds = 2;
+constexpr int tetSweeps = 8, offSweeps = 16, offRounds = 2, backRounds = 3;
 
 // A little inside those that the report judges by: checkMesh's, and the user's where they ask for more.
 QualityLimits strictLimits(const DictionaryLimits& asked) {
@@ -114,7 +114,11 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, L
         optimiser.mendTetsOffWall(left, offSweeps);
         left = facesLeft();
     }
-    if (!left.empty()) stepBackFrom(left, {mesh, cellFaces, faults, front, lattice, startThickness, limits}, optimiser);
+    // What helps one face may be in the way of another's help.
+    for (int round = 0; round < backRounds && !left.empty(); ++round) {
+        if (stepBackFrom(left, {mesh, cellFaces, faults, front, lattice, startThickness, limits}, optimiser) == 0) break;
+        left = facesLeft();
+    }
     summary.poorRemaining = poor.all;
     summary.unmended = faults.poorFaces();
     for (const std::int32_t f : faults.undividedFaces())

@@ -43,11 +43,11 @@ class StepBack {
             optimiser_.track();
             optimiser_.moveTogether(movesOf(around, share));
             if (isLess(mended(around, before.size()))) {
+                const std::vector<Optimiser::NodeMove> places = optimiser_.trackedPlaces();
                 optimiser_.comeBack(backSweeps);
-                if (isLess(look(around))) {
-                    optimiser_.keep();
-                    return Outcome::mended;
-                }
+                if (!isLess(look(around))) optimiser_.moveTogether(places);
+                optimiser_.keep();
+                return Outcome::mended;
             }
             optimiser_.undo();
         }
