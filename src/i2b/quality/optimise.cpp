@@ -264,12 +264,13 @@ std::vector<Optimiser::NodeMove> Optimiser::trackedPlaces() const {
     return places;
 }
 
-void Optimiser::comeBack(int sweeps) {
+void Optimiser::comeBack(int sweeps, const std::vector<std::int32_t>& butAt) {
     if (!tracked_) return;
     std::vector<Vec3> places(front_.front.size());
     std::vector<Task> tasks;
+    const std::vector<Task> stay = tasksOfCellsAt(butAt);
     for (const auto& [node, from] : *tracked_) {
-        if (node.kind != MeshNode::wall) continue;
+        if (node.kind != MeshNode::wall || std::ranges::binary_search(stay, node, {}, &Task::node)) continue;
         places[Index(node.id)] = from.to;
         tasks.push_back({node, from.cell, {}, {}});
     }

@@ -46,9 +46,9 @@ class Optimiser {
     };
     void moveTogether(const std::vector<NodeMove>& moves);
     // Remembers from here on which nodes move, until they stay where they are or go back to where they were. comeBack() brings those of
-    // the wall as far back as that undoes nothing.
+    // the wall as far back as that undoes nothing, but for those of the cells beside some faces.
     void track() { tracked_.emplace(); }
-    void comeBack(int sweeps);
+    void comeBack(int sweeps, const std::vector<std::int32_t>& butAt = {});
     std::vector<NodeMove> trackedPlaces() const; // where those are that have moved
     void keep() { tracked_.reset(); }
     void undo();

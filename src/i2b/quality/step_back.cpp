@@ -43,9 +43,7 @@ class StepBack {
             optimiser_.track();
             optimiser_.moveTogether(movesOf(around, share));
             if (isLess(mended(around, before.size()))) {
-                const std::vector<Optimiser::NodeMove> places = optimiser_.trackedPlaces();
-                optimiser_.comeBack(backSweeps);
-                if (!isLess(look(around))) optimiser_.moveTogether(places);
+                comeBack(around, before.size());
                 optimiser_.keep();
                 return Outcome::mended;
             }
@@ -138,6 +136,17 @@ class StepBack {
         if (!left || left->size() < before || left->size() > before + mostMore) return left;
         optimiser_.mendTetsOffWall(*left, tetSweeps);
         return look(around);
+    }
+
+    // As far as less than that many are left: all that have gone back, or those around the place alone, or none.
+    void comeBack(const Around& around, std::size_t before) {
+        const std::vector<Optimiser::NodeMove> places = optimiser_.trackedPlaces();
+        const std::vector<std::int32_t> faces = undivided(around);
+        for (const bool all : {true, false}) {
+            optimiser_.comeBack(backSweeps, all ? std::vector<std::int32_t>{} : faces);
+            if (const Left left = look(around); left && left->size() < before) return;
+            optimiser_.moveTogether(places);
+        }
     }
 
     const StepBackInput& in_;
