@@ -1,6 +1,6 @@
 // Proves: tetShare() of a square between two cells is 1, and falls below the limit of what divides where a corner turns back, a face has
 // no width, or a cell's centre is on the wrong side; where all faces of a mesh are over that limit, none breaks the limits of
-// tetrahedra, concavity or twist in the report; pyramidShare() is 0 at the least volume.
+// tetrahedra, concavity or twist in the report; shares over what is enough are given as that; pyramidShare() is 0 at the least volume.
 #include "i2b/quality/face_tets.h"
 #include "i2b/quality/measures.h"
 #include "i2b/quality/quality_report.h"
@@ -81,6 +81,41 @@ TEST(TetShare, IsNoBetterThanTheReport) {
     }
     EXPECT_GT(good, 200);
     EXPECT_GT(poor, 200);
+}
+
+// The glance that settles most faces says the same as the close look.
+TEST(TetShare, IsCutOffAtWhatIsEnough) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> off(-0.5, 0.5), height(0.02, 1);
+    int cut = 0, whole = 0;
+    for (int i = 0; i < 20000; ++i) {
+        std::array<Vec3, 4> face = square(0);
+        for (Vec3& p : face) p += Vec3{off(random), off(random), 0.4 * off(random)};
+        const PolyMesh mesh = columnOf({square(-1), face, square(1)});
+        const FaceShape shape = measureFace(mesh, 0);
+        const Vec3 below{0.5 + off(random), 0.5 + off(random), -height(random)}, above{0.5 + off(random), 0.5 + off(random), height(random)};
+        const Vec3* const neighbour = i % 3 == 0 ? nullptr : &above;
+        const double share = tetShare(mesh, 0, shape.centre, shape.area, below, neighbour);
+        for (const double enough : {0.01, 0.08, 0.5}) {
+            EXPECT_NEAR(tetShare(mesh, 0, shape.centre, shape.area, below, neighbour, enough), std::min(share, enough), 1e-12) << "face " << i;
+            ++(share > enough ? cut : whole);
+        }
+    }
+    EXPECT_GT(cut, 5000);
+    EXPECT_GT(whole, 5000);
+}
+
+TEST(FaceShape, OfAQuadrangleIsThatOfAPolygon) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> any(-1, 1);
+    for (int i = 0; i < 1000; ++i) {
+        std::array<Vec3, 4> p;
+        for (Vec3& v : p) v = {any(random), any(random), any(random)};
+        if (i % 50 == 0) p[1] = p[3] = p[2] = p[0];
+        const FaceShape quad = shapeOfQuad(p[0], p[1], p[2], p[3]), polygon = shapeOfPolygon(p.data(), p.size());
+        EXPECT_EQ(quad.centre, polygon.centre); // to the last bit
+        EXPECT_EQ(quad.area, polygon.area);
+    }
 }
 
 TEST(PyramidShare, IsTheLesserOneBeyondTheLeast) {

@@ -2,7 +2,6 @@
 #include "i2b/quality/face_tets.h"
 #include "i2b/quality/measures.h"
 #include <algorithm>
-#include <numbers>
 
 namespace i2b {
 namespace {
@@ -133,8 +132,7 @@ void CellStar::judgeFace(Index i, Badness& out) {
     const std::int32_t neighbour = mesh_.neighbour[Index(face.face)];
     const CellMoments& nei = momentsOf(face.neighbour, neighbour);
     const PairValues values = pairValues(shape, own, nei);
-    const double limit = 1 - std::cos(limits_.nonOrthogonality * std::numbers::pi / 180);
-    add(out, (1 - values.ortho) / limit);
+    add(out, (1 - values.ortho) / orthoLimit_);
     add(out, std::min(wrong, faceSkewness(mesh_, face.face, shape, own.centre, &nei.centre, counts * limits_.skewness) / limits_.skewness));
     if (!thinWeights_ && owner >= thinFrom_ && neighbour >= thinFrom_) return;
     add(out, std::min(wrong, limits_.faceWeight / std::max(values.weight, 1e-300)));

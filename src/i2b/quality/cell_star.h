@@ -2,7 +2,9 @@
 #pragma once
 #include "i2b/quality/mesh_geometry.h"
 #include "i2b/quality/quality_report.h"
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace i2b {
 
@@ -25,7 +27,8 @@ class CellStar {
     // Keeps references. moments: of all cells, as they are now; those of the star's own cells are worked out anew.
     CellStar(const PolyMesh& mesh, const Rows& cellFaces, const CellMoments* moments, const QualityLimits& limits, std::int32_t thinFrom,
              bool thinWeights = false)
-        : mesh_(mesh), cellFaces_(cellFaces), moments_(moments), limits_(limits), thinFrom_(thinFrom), thinWeights_(thinWeights) {}
+        : mesh_(mesh), cellFaces_(cellFaces), moments_(moments), limits_(limits), thinFrom_(thinFrom), thinWeights_(thinWeights),
+          orthoLimit_(1 - std::cos(limits.nonOrthogonality * std::numbers::pi / 180)) {}
 
     // All cells that use one of the points (sorted): ascending. from: one that does for each group of points that hang together.
     const std::vector<std::int32_t>& cellsAt(const std::vector<std::int32_t>& points, const std::vector<std::int32_t>& from);
@@ -64,6 +67,7 @@ class CellStar {
     QualityLimits limits_;
     std::int32_t thinFrom_;
     bool thinWeights_; // do weights and volume ratios among thin cells count?
+    double orthoLimit_; // of 1 less the cosine
     std::vector<std::int32_t> points_, cells_;
     std::vector<Face> faces_;                          // ascending
     std::vector<std::uint32_t> faceOf_, firstFace_;    // the faces of each cell, places in faces_

@@ -1,4 +1,5 @@
 #include "i2b/quality/face_tets.h"
+#include "i2b/core/four.h"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,6 +21,14 @@ double shareBelow(double enough, double value, double size2) {
     return size2 > 0 ? value / std::sqrt(size2) : least;
 }
 
+// What thinness leaves of an area, of a face's or one of its triangles.
+double widthOf(const Vec3& area, double reach2, double enough) { return std::min(enough, widthScale * (norm(area) / reach2 - leastWidth)); }
+// Squared area from which that is enough.
+double widestSquared(double reach2, double enough) {
+    const double widest = (enough / widthScale + leastWidth) * reach2;
+    return widest * widest;
+}
+
 // One cell's centre, as seen from the centre of a face.
 struct Apex {
     Vec3 place;        // m
@@ -32,6 +41,42 @@ struct Apex {
     }
 };
 
+// A glance at a quadrangle: are all its shares clearly enough? Works with squares, so that no root is taken.
+class QuadLook {
+  public:
+    QuadLook(const Vec3& centre, const Vec3& area, const Vec3& owner, const Vec3* neighbour, double enough)
+        : area_(area), enough_(enough), toOwner_(owner - centre), toNeighbour_(neighbour ? *neighbour - centre : centre - owner) {}
+
+    bool isClear(const std::array<Vec3, 4>& p) const { // from the centre
+        const double reach2 = std::max(std::max(norm2(p[0]), norm2(p[1])), std::max(norm2(p[2]), norm2(p[3])));
+        const double down = -dot(area_, toOwner_), up = dot(area_, toNeighbour_), area2 = norm2(area_);
+        const double widest2 = widestSquared(reach2, enough_);
+        if (!(down > 0) || !(up > 0) || !(area2 >= widest2)) return false;
+        const VecFour here = fourOf(p[0], p[1], p[2], p[3]);
+        const VecFour next = picked<1, 2, 3, 0>(here), twice = cross(here, next), after = next - here;
+        // Sizes and heights as in Apex::share(), both sides times the face's area.
+        const double least2 = enough_ * enough_ / area2, down2 = least2 * down * down, up2 = least2 * up * up;
+        const Vec3 across = toNeighbour_ - toOwner_;
+        const double turn2 = (enough_ + leastTwist) * (enough_ + leastTwist) * norm2(across);
+        const auto isSeen = [&](const VecFour& from, const VecFour& normal, const Four& size2) {
+            const Four apart = dot(normal, from), above = apart - dot(normal, toOwner_), below = dot(normal, toNeighbour_) - apart;
+            return (size2 >= widest2) & (above > 0) & (above * above >= down2 * size2) & (below > 0) & (below * below >= up2 * size2);
+        };
+        const Four size2 = dot(twice, twice), turn = dot(twice, across);
+        const auto around = isSeen(here, twice, size2) & (turn > 0) & (turn * turn >= turn2 * size2) & (dot(cross(picked<3, 0, 1, 2>(after), after), area_) >= 0);
+        if (!(around[0] & around[1] & around[2] & around[3])) return false;
+        const VecFour from = picked<0, 0, 1, 1>(here); // both diagonals, each with its two triangles
+        const VecFour fan = cross(picked<1, 2, 2, 3>(here) - from, picked<2, 3, 3, 0>(here) - from);
+        const auto fans = isSeen(from, fan, dot(fan, fan));
+        return (fans[0] & fans[1]) != 0 || (fans[2] & fans[3]) != 0;
+    }
+
+  private:
+    Vec3 area_; // m^2
+    double enough_;
+    Vec3 toOwner_, toNeighbour_; // m; on the boundary as far beyond the face
+};
+
 class Face {
   public:
     Face(const PolyMesh& mesh, std::int32_t face, const Vec3& centre, const Vec3& area, const Vec3& owner, const Vec3* neighbour, double enough)
@@ -41,15 +86,12 @@ class Face {
         if (neighbour) apexes_[count_++] = {*neighbour - centre, dot(normal, *neighbour - centre)};
         across_ = normalized((neighbour ? *neighbour : centre) - owner);
         for (Index i = 0; i < v_.size(); ++i) reach2_ = std::max(reach2_, norm2(at(i)));
-        const double widest = (enough / widthScale + leastWidth) * reach2_;
-        widest2_ = widest * widest;
+        widest2_ = widestSquared(reach2_, enough);
     }
-    bool isFlat() const { // a triangle or a parallelogram
-        if (v_.size() != 4) return v_.size() == 3;
-        return norm2(at(0) - at(1) + at(2) - at(3)) <= flat2 * norm2(at(0) - at(2));
+    bool isParallelogram() const {
+        return v_.size() == 4 && norm2(at(0) - at(1) + at(2) - at(3)) <= flat2 * norm2(at(0) - at(2));
     }
-    // What thinness leaves of an area, of the face's or one of its triangles.
-    double width(const Vec3& area) const { return norm2(area) < widest2_ ? widthScale * (norm(area) / reach2_ - leastWidth) : enough_; }
+    double width(const Vec3& area) const { return norm2(area) < widest2_ ? widthOf(area, reach2_, enough_) : enough_; }
     double aroundCentre() const {
         double worst = enough_;
         Vec3 here = at(0);
@@ -109,9 +151,13 @@ class Face {
 
 double tetShare(const PolyMesh& mesh, std::int32_t face, const Vec3& centre, const Vec3& area, const Vec3& owner, const Vec3* neighbour,
                 double enough) {
+    const auto v = mesh.face(face);
+    const auto at = [&](Index i) { return mesh.points[Index(v[i])] - centre; };
+    if (v.size() == 4 && QuadLook(centre, area, owner, neighbour, enough).isClear({at(0), at(1), at(2), at(3)})) return enough;
+    if (v.size() == 3) return std::max(least, widthOf(area, std::max({norm2(at(0)), norm2(at(1)), norm2(at(2))}), enough));
     const Face f(mesh, face, centre, area, owner, neighbour, enough);
     const double width = f.width(area);
-    if (f.isFlat()) return std::max(least, width);
+    if (f.isParallelogram()) return std::max(least, width);
     const double around = std::min({width, f.aroundCentre(), f.atCorners(area)});
     return std::max(least, std::min(around, f.bestFan(around)));
 }

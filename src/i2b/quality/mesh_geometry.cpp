@@ -17,9 +17,8 @@ FaceShape measureFace(const PolyMesh& mesh, std::int32_t face) {
         for (Index i = 0; i < v.size(); ++i) points[i] = mesh.points[Index(v[i])];
     };
     if (v.size() == 4) {
-        std::array<Vec3, 4> four;
-        gather(four.data());
-        return shapeOfPolygon(four.data(), std::integral_constant<Index, 4>{});
+        const auto at = [&](Index i) -> const Vec3& { return mesh.points[Index(v[i])]; };
+        return shapeOfQuad(at(0), at(1), at(2), at(3));
     }
     if (std::array<Vec3, 16> few; v.size() <= few.size()) {
         gather(few.data());

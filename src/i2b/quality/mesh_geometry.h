@@ -2,6 +2,7 @@
 // worked out where they are asked for: held for all faces they would be larger than the mesh.
 #pragma once
 #include "i2b/assemble/mesh_topology.h"
+#include "i2b/core/four.h"
 
 namespace i2b {
 
@@ -42,6 +43,18 @@ FaceShape shapeOfPolygon(const Vec3* point, Count n) {
     }
     if (area < tinyArea) return {mean, {}};
     return {divided((1.0 / 3.0) * weighted, area), 0.5 * normal};
+}
+
+// The same of four points at once.
+inline FaceShape shapeOfQuad(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    constexpr double tinyArea = 1e-150;
+    const Vec3 mean = divided(((a + b) + c) + d, 4.0);
+    const VecFour here = fourOf(a, b, c, d), next = picked<1, 2, 3, 0>(here), twice = cross(next - here, mean - here);
+    const Four size = sqrt(dot(twice, twice));
+    const double area = sum(size);
+    if (area < tinyArea) return {mean, {}};
+    const Vec3 weighted = sum(size * (here + next + mean));
+    return {divided((1.0 / 3.0) * weighted, area), 0.5 * sum(twice)};
 }
 
 FaceShape measureFace(const PolyMesh& mesh, std::int32_t face);

@@ -82,7 +82,9 @@ class Optimiser {
     bool keepsFolds(const MeshNode& node, const Vec3& to) const;
     bool isHeld(const MeshNode& wall) const;
     bool mayLeave(const MeshNode& wall) const { return !leavers_.empty() && leavers_[static_cast<std::size_t>(wall.id)] != 0; }
-    Vec3 onWall(const MeshNode& node, const Vec3& from, const Vec3& to) const;
+    enum class Hold : std::uint8_t { nothing, surface, feature };
+    Hold holdAt(const MeshNode& node, const Vec3& from) const;
+    Vec3 onWall(Hold hold, const MeshNode& node, const Vec3& from, const Vec3& to) const;
     bool targetOf(std::int32_t vertex, Vec3& target) const;
     bool bendNode(const Task& task, Worker& worker);
     bool mendNode(const Task& task, Worker& worker);

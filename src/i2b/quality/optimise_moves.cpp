@@ -33,16 +33,19 @@ bool Optimiser::isFree(const MeshNode& node, const Vec3& to) const {
     });
 }
 
-// Wall nodes that are on the geometry stay on it, on the feature that they are held to.
-Vec3 Optimiser::onWall(const MeshNode& node, const Vec3& from, const Vec3& to) const {
-    if (node.kind != MeshNode::wall || mayLeave(node) || front_.outside[Index(node.id)] != 0) return to;
+// What a wall node at a place is on, and stays on.
+Optimiser::Hold Optimiser::holdAt(const MeshNode& node, const Vec3& from) const {
+    if (node.kind != MeshNode::wall || mayLeave(node) || front_.outside[Index(node.id)] != 0) return Hold::nothing;
     const double h = front_.h[Index(node.id)];
-    if (isHeld(node)) {
-        const FeatureIndex::Line was = snapLine(guide_.index, guide_.features, guide_.snaps[Index(node.id)], from, h);
-        if (norm(was.point - from) <= settled * h) return snapLine(guide_.index, guide_.features, guide_.snaps[Index(node.id)], to, h).point;
-    }
-    const ClosestPoint was = guide_.index.closest(from, settled * h);
-    if (!was) return to;
+    if (isHeld(node) && norm(snapLine(guide_.index, guide_.features, guide_.snaps[Index(node.id)], from, h).point - from) <= settled * h) return Hold::feature;
+    return guide_.index.closest(from, settled * h) ? Hold::surface : Hold::nothing;
+}
+
+// Where a node on its way from one place to another ends up.
+Vec3 Optimiser::onWall(Hold hold, const MeshNode& node, const Vec3& from, const Vec3& to) const {
+    if (hold == Hold::nothing) return to;
+    const double h = front_.h[Index(node.id)];
+    if (hold == Hold::feature) return snapLine(guide_.index, guide_.features, guide_.snaps[Index(node.id)], to, h).point;
     const ClosestPoint c = guide_.index.closest(to, norm(to - from) + settled * h);
     return c ? c.point : from;
 }
@@ -58,10 +61,11 @@ bool Optimiser::mendNode(const Task& task, Worker& worker) {
     const Vec3 middle = worker.middle();
     const double h = nodes_.h(task.node);
     const Vec3 down = worker.descent(before.sum, probe * h, outside, [&](const Vec3& to) { return worker.at(to).sum; });
+    const Hold hold = holdAt(task.node, from);
     Vec3 best = from;
     Badness least = before;
     const auto tryStep = [&](const Vec3& step) {
-        const Vec3 to = onWall(task.node, from, from + step);
+        const Vec3 to = onWall(hold, task.node, from, from + step);
         const Badness b = worker.at(to);
         if (b.worst > before.worst || (b.invalid && !before.invalid) || !(b.sum < least.sum) || !isFree(task.node, to)) return;
         least = b, best = to;

@@ -114,20 +114,24 @@ bool Optimiser::mendNodeTets(const Task& task, Worker& worker) {
     const Vec3 from = worker.from;
     const TetLack before = worker.tetsAt(from);
     if (!before.undivided) return false;
-    std::optional<Badness> limits; // where it is; asked for by what would be better
+    std::optional<Badness> limits; // where it is; asked for where they are broken
     const auto keepsLimits = [&](const Vec3& to) {
+        const Badness there = worker.at(to);
+        if (there.invalid || there.worst <= nearLimit) return !there.invalid;
         if (!limits) limits = worker.at(from);
-        return mayStand(worker.at(to), *limits);
+        return mayStand(there, *limits);
     };
+    const Hold hold = holdAt(task.node, from);
     const Vec3 toMiddle = withinSides(worker.middle() - from, outside);
     Vec3 best = from;
     double least = before.sum * (1 - leastGain);
     const auto tryPlace = [&](const Vec3& to) {
-        const double tets = worker.tetsAt(to, least).sum;
-        if (tets < least && keepsLimits(to) && isFree(task.node, to) && (leaves || keepsFolds(task.node, to))) least = tets, best = to;
+        const double tets = worker.tetsAt(to, least).sum; // what is cheap to ask comes first
+        if (tets < least && isFree(task.node, to) && (leaves || keepsFolds(task.node, to)) && keepsLimits(to)) least = tets, best = to;
     };
     const auto tryStep = [&](const Vec3& step) {
-        const Vec3 to = onWall(task.node, from, from + step);
+        if (least == 0) return;
+        const Vec3 to = onWall(hold, task.node, from, from + step);
         if (!leaves || guide_.index.closest(to, mostOff * nodes_.h(task.node))) tryPlace(to);
     };
     for (const double share : towardsMiddle) tryStep(toMiddle * share);
