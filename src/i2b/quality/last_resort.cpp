@@ -1,11 +1,10 @@
 #include "i2b/quality/last_resort.h"
+#include "i2b/quality/poor_places.h"
 #include "i2b/quality/local_edits.h"
 #include "i2b/quality/dictionary_measure.h"
 #include "i2b/quality/measure_steps.h"
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <numbers>
 #include <optional>
 
 namespace i2b {
@@ -206,63 +205,6 @@ std::vector<std::int32_t> make(const std::vector<std::optional<Trial>>& changes,
     return touched;
 }
 
-// Faces with a corner that turns back by about the angle (degrees) or more, as checkMesh asks: by its sine.
-std::vector<std::int32_t> concaveFaces(const PolyMesh& mesh, double degrees) {
-    const double sine = std::sin(degrees * std::numbers::pi / 180), least2 = 0.99 * sine * sine;
-    const auto isConcave = [&](std::int32_t f) {
-        const auto v = mesh.face(f);
-        if (v.size() == 3) return false;
-        const auto edge = [&](Index i) { return mesh.points[Index(v[(i + 1) % v.size()])] - mesh.points[Index(v[i % v.size()])]; };
-        Vec3 twice, before = edge(v.size() - 1);
-        for (Index i = 1; i + 1 < v.size(); ++i) twice += cross(mesh.points[Index(v[i])] - mesh.points[Index(v[0])], edge(i));
-        for (Index i = 0; i < v.size(); ++i) {
-            const Vec3 next = edge(i), turn = cross(before, next);
-            if (!(dot(turn, twice) > 0) && norm2(turn) > least2 * norm2(before) * norm2(next)) return true;
-            before = next;
-        }
-        return false;
-    };
-    using Faces = std::vector<std::int32_t>;
-    return orderedReduce(
-        Index(mesh.faces()), Faces{},
-        [&](Index begin, Index end) {
-            Faces found;
-            for (Index f = begin; f < end; ++f)
-                if (isConcave(static_cast<std::int32_t>(f))) found.push_back(static_cast<std::int32_t>(f));
-            return found;
-        },
-        [](Faces a, const Faces& b) {
-            a.insert(a.end(), b.begin(), b.end());
-            return a;
-        });
-}
-
-// Faces of the thin cells whose determinant is too small; none where many have that, which goes with their height then.
-std::vector<std::int32_t> facesOfFlatCells(const PolyMesh& mesh, const Rows& cellFaces, std::int32_t thinFrom, double determinant) {
-    using Cells = std::vector<std::int32_t>;
-    const Cells flat = orderedReduce(
-        Index(mesh.cells - thinFrom), Cells{},
-        [&](Index begin, Index end) {
-            Cells found;
-            CellFaceShapes shapes(mesh);
-            for (Index i = begin; i < end; ++i) {
-                const std::int32_t cell = thinFrom + static_cast<std::int32_t>(i);
-                if (found.size() <= mostFlat && cellFullness(shapes.of(cellFaces[cell])) < determinant) found.push_back(cell);
-            }
-            return found;
-        },
-        [](Cells a, const Cells& b) {
-            a.insert(a.end(), b.begin(), b.end());
-            return a;
-        });
-    if (flat.size() > mostFlat) return {};
-    std::vector<std::int32_t> faces;
-    for (const std::int32_t cell : flat) faces.insert(faces.end(), cellFaces[cell].begin(), cellFaces[cell].end());
-    std::sort(faces.begin(), faces.end());
-    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-    return faces;
-}
-
 // Per face that dividing adds to walls, the cell there; ascending.
 std::vector<std::int32_t> piecesOfWalls(const PolyMesh& mesh, const MeshEdits& edits) {
     std::vector<std::int32_t> cells;
@@ -274,10 +216,6 @@ std::vector<std::int32_t> piecesOfWalls(const PolyMesh& mesh, const MeshEdits& e
     std::sort(cells.begin(), cells.end());
     return cells;
 }
-
-} // namespace
-
-namespace {
 
 // Tries and makes changes for the faces; places: of those that were to be mended (may be null).
 void seekChanges(const PolyMesh& mesh, std::vector<std::int32_t> faces, const DictionaryLimits& limits, std::int32_t thinFrom, LocalEdits& edits,
@@ -351,6 +289,7 @@ std::vector<std::int32_t> facesBeyondHelp(const PolyMesh& mesh, const Rows& cell
     seekChanges(mesh, poorFaces, limits, thinFrom, edits, nullptr);
     return facesLeft(mesh, poorFaces, limits, edits);
 }
+
 LastResort changePoorPlaces(PolyMesh& mesh, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits, std::int32_t thinFrom) {
     LastResort summary;
     std::vector<std::int32_t> faces, concave;
@@ -364,7 +303,7 @@ LastResort changePoorPlaces(PolyMesh& mesh, const std::vector<std::int32_t>& poo
     if (flatAsked) {
         const std::vector<std::int32_t> poor = std::move(faces);
         faces.clear();
-        std::ranges::set_union(poor, facesOfFlatCells(mesh, cellFaces, thinFrom, limits.determinant), std::back_inserter(faces));
+        std::ranges::set_union(poor, facesOfFlatCells(mesh, cellFaces, thinFrom, limits.determinant, mostFlat), std::back_inserter(faces));
     }
     if (faces.empty()) return summary;
     Edited edited = seekInOrders(mesh, cellFaces, faces, limits, thinFrom);
