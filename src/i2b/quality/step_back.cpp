@@ -138,7 +138,7 @@ class StepBack {
         return look(around);
     }
 
-    // As far as less than that many are left: all that have gone back, or those around the place alone, or none.
+    // As far as less than that many are left: all that have gone, or all but those beside faces that do not divide, or none.
     void comeBack(const Around& around, std::size_t before) {
         const std::vector<Optimiser::NodeMove> places = optimiser_.trackedPlaces();
         const std::vector<std::int32_t> faces = undivided(around);
