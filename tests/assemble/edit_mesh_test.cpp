@@ -80,7 +80,7 @@ TEST(EditMesh, UnitesTwoCells) {
             EXPECT_DOUBLE_EQ(now[Index(numbers[Index(c)])], old[Index(c)]);
         }
         EXPECT_NEAR(now[Index(a)], old[Index(a)] + old[Index(b)], 1e-14);
-        EXPECT_EQ(mesh.zones.front().cells, std::vector<std::int32_t>{a});
+        EXPECT_EQ(mesh.zones.front().cells, RawVector<std::int32_t>{a});
         EXPECT_EQ(mesh.cellLevel[Index(a)], before.cellLevel[Index(a)]);
         EXPECT_EQ(mesh.cellRegion[Index(a)], before.cellRegion[Index(a)]);
         const std::uint8_t x = before.cellLayer[Index(a)], y = before.cellLayer[Index(b)]; // 0: none

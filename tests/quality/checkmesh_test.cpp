@@ -102,7 +102,7 @@ class CheckMesh : public testing::Test {
         for (std::int32_t f = 0; f < mesh.faces(); ++f)
             faces += fmt::format("{}({})\n", mesh.face(f).size(), fmt::join(mesh.face(f), " "));
         writeText(folder / "faces", faces + ")\n");
-        const auto labels = [&](const char* name, const std::vector<std::int32_t>& values) {
+        const auto labels = [&](const char* name, std::span<const std::int32_t> values) {
             writeText(folder / name,
                       foamFile("labelList", name) +
                           fmt::format("{}\n(\n{}\n)\n", values.size(), fmt::join(values, "\n")));

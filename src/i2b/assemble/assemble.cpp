@@ -262,6 +262,7 @@ void Assembler::layOut(PolyMesh& mesh) {
     }
     const auto all = static_cast<std::size_t>(faces) + frontFaces_;
     mesh.faceOffsets.resize(all + 1);
+    mesh.faceOffsets[0] = 0;
     mesh.owner.resize(all);
     mesh.faceVertices.resize(static_cast<std::size_t>(wall));
 }

@@ -85,8 +85,8 @@ std::vector<std::uint32_t> scan(const FaceOrder& order, const auto& count) {
 
 void rewriteVertices(PolyMesh& mesh, const FaceOrder& order, const Fans& fans, const std::vector<std::uint32_t>& firstPiece) {
     const std::vector<std::uint32_t> first = scan(order, [&](Index f) { return fans.vertices(f); });
-    std::vector<std::int32_t> vertices(first.back());
-    std::vector<std::uint32_t> offsets(firstPiece.back() + 1);
+    RawVector<std::int32_t> vertices(first.back());
+    RawVector<std::uint32_t> offsets(firstPiece.back() + 1);
     offsets.back() = first.back();
     parallelFor(order.size(), [&](Index i) {
         const auto v = mesh.face(static_cast<std::int32_t>(order.face(i)));
@@ -109,7 +109,7 @@ void rewriteVertices(PolyMesh& mesh, const FaceOrder& order, const Fans& fans, c
 }
 
 void rewriteSides(PolyMesh& mesh, const FaceOrder& order, const std::vector<std::int32_t>& number, const std::vector<std::uint32_t>& firstPiece) {
-    std::vector<std::int32_t> owner(firstPiece.back()), neighbour(firstPiece[order.internal()]);
+    RawVector<std::int32_t> owner(firstPiece.back()), neighbour(firstPiece[order.internal()]);
     parallelFor(order.size(), [&](Index i) {
         const std::int32_t own = number[Index(mesh.owner[order.face(i)])];
         const std::int32_t nei = i < order.internal() ? number[Index(mesh.neighbour[order.face(i)])] : own;

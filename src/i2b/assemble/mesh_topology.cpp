@@ -71,8 +71,8 @@ void unite(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b) {
 } // namespace
 
 Rows buildCellFaces(const PolyMesh& mesh) {
-    const auto each = [](const std::vector<std::int32_t>& cells) {
-        return [&](const auto& add) {
+    const auto each = [](std::span<const std::int32_t> cells) {
+        return [cells](const auto& add) {
             for (Index f = 0; f < cells.size(); ++f) add(cells[f], f);
         };
     };

@@ -2,7 +2,7 @@
 // count, scan, fill; the order of a row follows from the mesh alone.
 #pragma once
 #include "i2b/assemble/poly_mesh.h"
-#include "i2b/assemble/raw_vector.h"
+#include "i2b/core/raw_vector.h"
 #include <cstdint>
 #include <span>
 #include <vector>

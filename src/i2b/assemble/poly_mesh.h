@@ -4,6 +4,7 @@
 //   points from owner[f] to neighbour[f], or out of the domain on a boundary face.
 //   Internal faces come first, by owner, then neighbour (upper triangular order); boundary faces follow patch by patch.
 #pragma once
+#include "i2b/core/raw_vector.h"
 #include "i2b/core/vec.h"
 #include <cstdint>
 #include <span>
@@ -21,15 +22,15 @@ struct Patch {
 
 struct CellZone {
     std::string name;
-    std::vector<std::int32_t> cells; // ascending
+    RawVector<std::int32_t> cells; // ascending
 };
 
 struct PolyMesh {
     std::vector<Vec3> points;                 // m
-    std::vector<std::uint32_t> faceOffsets;   // faces + 1
-    std::vector<std::int32_t> faceVertices;
-    std::vector<std::int32_t> owner;          // per face
-    std::vector<std::int32_t> neighbour;      // per internal face
+    RawVector<std::uint32_t> faceOffsets;     // faces + 1
+    RawVector<std::int32_t> faceVertices;
+    RawVector<std::int32_t> owner;            // per face
+    RawVector<std::int32_t> neighbour;        // per internal face
     std::int32_t cells = 0;
     std::vector<Patch> patches;
     std::vector<CellZone> zones;

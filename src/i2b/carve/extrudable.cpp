@@ -33,7 +33,11 @@ class Shaper {
     int gainOf(const Toggle& toggle, VertexLookup& lookup) const;
     Toggle bestToggle(const Place& v, VertexLookup& lookup) const;
     void removeNearest(const Place& v, VertexLookup& lookup, std::vector<Place>& out) const;
+    template <class Ask>
+    std::vector<Place> collect(const std::vector<Place>& from, std::size_t chunk, const Ask& ask) const;
     std::vector<Place> faulty(const std::vector<Place>& vertices) const;
+    void cellsAround(const Place& cell, VertexLookup& lookup, std::vector<Place>& out) const;
+    std::vector<Place> seeing(const std::vector<Place>& cells) const;
     std::vector<Place> improve(const std::vector<Place>& bad);
     std::vector<Place> cutBack(const std::vector<Place>& bad);
     double clearanceOf(const Place& cell) const {
@@ -146,18 +150,42 @@ void Shaper::removeNearest(const Place& v, VertexLookup& lookup, std::vector<Pla
     }
 }
 
-std::vector<Place> Shaper::faulty(const std::vector<Place>& vertices) const {
-    constexpr std::size_t chunk = 1024;
-    std::vector<std::vector<Place>> parts((vertices.size() + chunk - 1) / chunk);
-    parallelChunks(vertices.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+// What ask(place, lookup, out) gives for each place, in their order.
+template <class Ask>
+std::vector<Place> Shaper::collect(const std::vector<Place>& from, std::size_t chunk, const Ask& ask) const {
+    std::vector<std::vector<Place>> parts((from.size() + chunk - 1) / chunk);
+    parallelChunks(from.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
         VertexLookup lookup(grid_, kept_);
-        for (std::size_t i = begin; i < end; ++i) {
-            if (faults(vertices[i], lookup, nullptr) > 0) parts[c].push_back(vertices[i]);
-        }
+        for (std::size_t i = begin; i < end; ++i) ask(from[i], lookup, parts[c]);
     });
-    std::vector<Place> bad;
-    for (const std::vector<Place>& part : parts) bad.insert(bad.end(), part.begin(), part.end());
-    return bad;
+    std::vector<Place> all;
+    for (const std::vector<Place>& part : parts) all.insert(all.end(), part.begin(), part.end());
+    return all;
+}
+
+std::vector<Place> Shaper::faulty(const std::vector<Place>& vertices) const {
+    return collect(vertices, 1024, [&](const Place& v, VertexLookup& lookup, std::vector<Place>& out) {
+        if (faults(v, lookup, nullptr) > 0) out.push_back(v);
+    });
+}
+
+// Cells that share a vertex with one, it among them.
+void Shaper::cellsAround(const Place& cell, VertexLookup& lookup, std::vector<Place>& out) const {
+    for (const Place& v : verticesOf({cell}, lookup, grid_)) {
+        for (const Octant& o : lookup.view(v).octants) {
+            if (o.level >= 0) out.push_back({o.level, o.cell});
+        }
+    }
+}
+
+// Vertices that a change of these cells tells on: those around, and what their neighbours' edges see at the other end.
+std::vector<Place> Shaper::seeing(const std::vector<Place>& cells) const {
+    std::vector<Place> around = collect(cells, 16, [&](const Place& cell, VertexLookup& lookup, std::vector<Place>& out) { cellsAround(cell, lookup, out); });
+    sortUnique(around);
+    return collect(around, 64, [&](const Place& cell, VertexLookup& lookup, std::vector<Place>& out) {
+        const std::vector<Place> vertices = verticesOf({cell}, lookup, grid_);
+        out.insert(out.end(), vertices.begin(), vertices.end());
+    });
 }
 
 // Makes the best changes that do not look at each other's vertices: their gains add up. Gives the changed cells.
@@ -169,21 +197,24 @@ std::vector<Place> Shaper::improve(const std::vector<Place>& bad) {
     });
     std::erase_if(toggles, [](const Toggle& t) { return t.gain <= 0; });
     std::sort(toggles.begin(), toggles.end());
-    std::set<Place> near; // vertices of the cells changed, and one edge further: faults look that far
-    std::vector<Toggle> accepted;
-    VertexLookup lookup(grid_, kept_);
-    for (const Toggle& t : toggles) {
-        const std::vector<Place> own = verticesOf({t.cell}, lookup, grid_);
-        if (std::any_of(own.begin(), own.end(), [&](const Place& v) { return near.count(v) > 0; })) continue;
-        std::vector<Place> around;
-        for (const Place& v : own) {
-            for (const Octant& o : lookup.view(v).octants) {
-                if (o.level >= 0) around.push_back({o.level, o.cell});
-            }
+    struct Sight { std::vector<Place> own, near; }; // vertices of the cell, and those one edge further: faults look that far
+    std::vector<Sight> sights(toggles.size());
+    parallelChunks(toggles.size(), 16, [&](std::size_t begin, std::size_t end, std::size_t) {
+        VertexLookup lookup(grid_, kept_);
+        for (std::size_t i = begin; i < end; ++i) {
+            std::vector<Place> around;
+            cellsAround(toggles[i].cell, lookup, around);
+            sortUnique(around);
+            sights[i] = {verticesOf({toggles[i].cell}, lookup, grid_), verticesOf(around, lookup, grid_)};
         }
-        sortUnique(around);
-        for (const Place& v : verticesOf(around, lookup, grid_)) near.insert(v);
-        accepted.push_back(t);
+    });
+    std::set<Place> near;
+    std::vector<Toggle> accepted;
+    for (std::size_t i = 0; i < toggles.size(); ++i) {
+        const auto isNear = [&](const Place& v) { return near.count(v) > 0; };
+        if (std::any_of(sights[i].own.begin(), sights[i].own.end(), isNear)) continue;
+        near.insert(sights[i].near.begin(), sights[i].near.end());
+        accepted.push_back(toggles[i]);
     }
     std::vector<Place> changed;
     for (const Toggle& t : accepted) {
@@ -213,17 +244,7 @@ ShapingSummary Shaper::run() {
     while (!bad.empty()) {
         std::vector<Place> changed = improve(bad);
         if (changed.empty()) changed = cutBack(bad);
-        VertexLookup lookup(grid_, kept_);
-        // A change tells on the vertices around, and on what their neighbours' edges see at the other end.
-        std::vector<Place> around = bad;
-        for (const Place& v : verticesOf(changed, lookup, grid_)) {
-            for (const Octant& o : lookup.view(v).octants) {
-                if (o.level >= 0) around.push_back({o.level, o.cell});
-            }
-        }
-        around.erase(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(bad.size()));
-        sortUnique(around);
-        around = verticesOf(around, lookup, grid_);
+        std::vector<Place> around = seeing(changed);
         around.insert(around.end(), bad.begin(), bad.end());
         sortUnique(around);
         bad = faulty(around);

@@ -62,7 +62,7 @@ Csr<BandEdge> edgesOf(std::size_t rows, const std::vector<BandPieces>& pieces, c
         }, 1);
     };
     forEdges([&](std::uint32_t a, std::uint32_t) { raise(next[a]); });
-    std::vector<std::int32_t> other(static_cast<std::size_t>(exclusiveScan(next)));
+    RawVector<std::int32_t> other(static_cast<std::size_t>(exclusiveScan(next)));
     const std::vector<std::int64_t> first = next;
     forEdges([&](std::uint32_t a, std::uint32_t b) { other[static_cast<std::size_t>(raise(next[a]))] = static_cast<std::int32_t>(b); });
     Csr<BandEdge> edges; // pieces share edges: each once
@@ -122,7 +122,7 @@ void addPrisms(Band& band, const Front& front) {
     const Csr<BandEdge> wall = edgesOf(band.walls, pieces, [&](std::int32_t a, std::int32_t b) { return wallEdge(band, a, b); });
     // Each wall node has its front node last: higher in number than all wall nodes.
     const auto old = static_cast<std::size_t>(band.edges.start[band.walls]), all = wall.values.size() + band.walls;
-    std::vector<BandEdge> values(all + band.edges.values.size() - old);
+    RawVector<BandEdge> values(all + band.edges.values.size() - old);
     std::vector<std::int64_t> start(band.nodes() + 1);
     parallelFor(band.walls, [&](std::size_t v) {
         start[v] = wall.start[v] + static_cast<std::int64_t>(v);

@@ -2,6 +2,7 @@
 // of the front. Nodes are the wall positions b (one a fan), then core points: front points f, rings behind, and the
 // fixed points of the outermost cells.
 #pragma once
+#include "i2b/core/raw_vector.h"
 #include "i2b/front/front.h"
 #include "i2b/front/wanted_room.h"
 #include <array>
@@ -31,7 +32,7 @@ struct BandEdge {
 template <class T>
 struct Csr { // rows of values
     std::vector<std::int64_t> start;      // rows + 1
-    std::vector<T> values;
+    RawVector<T> values;
     std::span<const T> operator[](std::size_t row) const {
         return {values.data() + start[row], values.data() + start[row + 1]};
     }
@@ -50,7 +51,7 @@ struct Band {
     std::vector<Vec3> inside;             // m, per front node (less walls): amid the kept cells around it
     std::vector<std::uint8_t> behind;     // per front node (less walls): starts behind geometry, seen from inside
     Csr<std::int32_t> fansOf;             // per front node (less walls): its wall nodes
-    std::vector<Corner> corners;          // the core's, then the prisms'
+    RawVector<Corner> corners;            // the core's, then the prisms'
     std::size_t coreCorners = 0;
     Csr<std::int32_t> cornersOf;          // per movable node
     Csr<BandEdge> edges;                  // per node: a is the node itself, b the other end

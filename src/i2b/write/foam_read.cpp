@@ -48,7 +48,7 @@ bool allOf(Index n, const Test& test) {
         [](bool a, bool b) { return a && b; }, 1 << 16);
 }
 
-std::vector<std::int32_t> readLabels(const std::string& path) {
+RawVector<std::int32_t> readLabels(const std::string& path) {
     const MappedFile file(path);
     return FoamScanner(file).labels();
 }
@@ -162,7 +162,7 @@ void inParallel(const std::vector<std::function<void()>>& tasks) {
         if (failure) std::rethrow_exception(failure);
 }
 
-std::int32_t highest(const std::vector<std::int32_t>& cells) { // -1 of none
+std::int32_t highest(std::span<const std::int32_t> cells) { // -1 of none
     return orderedReduce(
         cells.size(), std::int32_t(-1),
         [&](Index begin, Index end) { return std::max(-1, *std::max_element(cells.begin() + std::ptrdiff_t(begin), cells.begin() + std::ptrdiff_t(end))); },
@@ -186,7 +186,7 @@ void checkRanges(const PolyMesh& mesh, const std::string& folder) {
         while (hasCorners(f)) ++f;
         fail(fmt::format("face {} has fewer than 3 vertices", f));
     }
-    const auto inRange = [](const std::vector<std::int32_t>& values, Index limit) {
+    const auto inRange = [](std::span<const std::int32_t> values, Index limit) {
         return allOf(values.size(), [&](Index i) { return values[i] >= 0 && static_cast<Index>(values[i]) < limit; });
     };
     if (!inRange(mesh.faceVertices, mesh.points.size())) fail("a face uses a point that is not there");

@@ -44,8 +44,8 @@ class Packed {
     const char* at_;
 };
 
-template <class T>
-void append(std::vector<T>& to, std::string_view bytes) {
+template <class T, class A>
+void append(std::vector<T, A>& to, std::string_view bytes) {
     to.insert(to.end(), Packed<T>(bytes.data()), Packed<T>(bytes.data() + bytes.size()));
 }
 
@@ -218,7 +218,7 @@ std::string_view FoamScanner::raw(std::size_t n, std::size_t size) {
 }
 
 template <class Label>
-void FoamScanner::appendTo(std::vector<Label>& to) {
+void FoamScanner::appendTo(RawVector<Label>& to) {
     const std::size_t n = count(header_.binary ? std::size_t(header_.labelBytes) : 2);
     const std::size_t start = to.size();
     if (peek() == "{") {
@@ -242,17 +242,17 @@ void FoamScanner::appendTo(std::vector<Label>& to) {
     }
 }
 
-void FoamScanner::appendLabels(std::vector<std::int32_t>& to) { appendTo(to); }
+void FoamScanner::appendLabels(RawVector<std::int32_t>& to) { appendTo(to); }
 
 // Labels below 0 turn out far too large, and the caller finds them out of order.
-std::vector<std::uint32_t> FoamScanner::offsets() {
-    std::vector<std::uint32_t> result;
+RawVector<std::uint32_t> FoamScanner::offsets() {
+    RawVector<std::uint32_t> result;
     appendTo(result);
     return result;
 }
 
-std::vector<std::int32_t> FoamScanner::labels() {
-    std::vector<std::int32_t> result;
+RawVector<std::int32_t> FoamScanner::labels() {
+    RawVector<std::int32_t> result;
     appendLabels(result);
     return result;
 }

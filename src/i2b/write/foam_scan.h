@@ -1,5 +1,6 @@
 // Reads OpenFOAM's list and dictionary syntax from the bytes of a file.
 #pragma once
+#include "i2b/core/raw_vector.h"
 #include "i2b/core/vec.h"
 #include "i2b/geometry/mapped_file.h"
 #include <cstdint>
@@ -25,9 +26,9 @@ class FoamScanner {
     void expect(std::string_view token);
     std::int64_t integer();
 
-    std::vector<std::int32_t> labels();               // N(...) or N{value}
-    void appendLabels(std::vector<std::int32_t>& to); // the same, at the end of a list
-    std::vector<std::uint32_t> offsets();             // labels, none below 0
+    RawVector<std::int32_t> labels();               // N(...) or N{value}
+    void appendLabels(RawVector<std::int32_t>& to); // the same, at the end of a list
+    RawVector<std::uint32_t> offsets();             // labels, none below 0
     std::vector<Vec3> points();
 
     [[noreturn]] void fail(const std::string& what) const;
@@ -43,7 +44,7 @@ class FoamScanner {
     std::string_view raw(std::size_t count, std::size_t size); // the bytes between ( and )
     std::size_t count(std::size_t leastBytesEach);
     template <class Label>
-    void appendTo(std::vector<Label>& to);
+    void appendTo(RawVector<Label>& to);
 
     const MappedFile& file_;
     std::string_view text_;

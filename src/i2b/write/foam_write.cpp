@@ -7,6 +7,7 @@
 #include <charconv>
 #include <fmt/format.h>
 #include <set>
+#include <tbb/parallel_invoke.h>
 
 namespace i2b {
 namespace {
@@ -47,7 +48,7 @@ struct FoamWriter {
 
     void points() const;
     void faces() const;
-    void labels(const char* object, const std::vector<std::int32_t>& values) const;
+    void labels(const char* object, std::span<const std::int32_t> values) const;
     void boundary() const;
     void cellZones() const;
 
@@ -133,7 +134,7 @@ void FoamWriter::faces() const {
     file.close();
 }
 
-void FoamWriter::labels(const char* object, const std::vector<std::int32_t>& values) const {
+void FoamWriter::labels(const char* object, std::span<const std::int32_t> values) const {
     OutputFile file(folder / object, binary() ? 4 * values.size() + 400 : 0);
     // Decomposing and converting tools read these counts instead of the points and faces.
     const std::string note = fmt::format("nPoints:{}  nCells:{}  nFaces:{}  nInternalFaces:{}",
@@ -224,10 +225,9 @@ void writeFoam(const PolyMesh& mesh, AtomicFolder& folder, const FoamWriteOption
                     folder.target().string(), "choose a larger --size");
     const std::filesystem::path place = folder.placeFolder(location);
     const FoamWriter writer{mesh, place, options, context};
-    writer.points();
-    writer.faces();
-    writer.labels("owner", mesh.owner);
-    writer.labels("neighbour", mesh.neighbour);
+    // Most of what binary files cost is the kernel's copy of them.
+    tbb::parallel_invoke([&] { writer.points(); }, [&] { writer.faces(); }, [&] { writer.labels("owner", mesh.owner); },
+                         [&] { writer.labels("neighbour", mesh.neighbour); });
     writer.boundary();
     if (!mesh.zones.empty()) writer.cellZones();
     if (!options.caseFiles) return;
