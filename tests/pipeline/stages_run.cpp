@@ -1,4 +1,5 @@
 #include "pipeline/stages_run.h"
+#include "i2b/geometry/rims.h"
 #include "i2b/carve/carve.h"
 #include "i2b/front/replace_faces.h"
 #include "i2b/samples/builder.h"
@@ -153,9 +154,20 @@ std::array<Vec3, 2> bentBackLine() { return {Vec3{0.03, -half.y, half.z}, Vec3{0
 
 std::array<Vec3, 4> lidFoot() { return turnedOutline(half); }
 
+namespace {
+
+// As generate() has them.
+FeatureGraph sharpLinesOf(const Painted& painted) {
+    FeatureGraph graph = buildFeatureGraph(painted.soup, {});
+    markRims(graph, *painted.index, {}, 2 * stagesSize);
+    return graph;
+}
+
+} // namespace
+
 ToFront::ToFront(const Surface& soup, const Options& options)
     : painted(RandomCase{"", soup, options}), kept(carve(painted.grid, painted.cut, painted.regions, *painted.index, options.fit)),
-      lattice(painted.grid, kept), front(buildFront(lattice, startThickness)), graph(buildFeatureGraph(painted.soup, {})), features(graph) {}
+      lattice(painted.grid, kept), front(buildFront(lattice, startThickness)), graph(sharpLinesOf(painted)), features(graph) {}
 
 ToMesh::ToMesh(const Surface& soup, const Options& options) : ToFront(soup, options) {
     const Context context;

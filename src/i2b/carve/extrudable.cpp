@@ -6,6 +6,8 @@
 namespace i2b {
 namespace {
 
+constexpr double sheetAtEdge = 0.4; // of an edge: nearer to its middle the geometry passes through it
+
 // A cell that changes sides, and what that is worth.
 struct Toggle {
     Place cell{-1, {}};
@@ -30,6 +32,7 @@ class Shaper {
     VertexView view(const Place& v, VertexLookup& lookup, const Toggle* toggle) const;
     FinePoint endOfEdge(const Place& v, const VertexView& view, std::size_t axis, int side, const VertexLookup& lookup) const;
     int faults(const Place& v, VertexLookup& lookup, const Toggle* toggle) const;
+    bool tears(Alternation alternation, const Place& v, const Place& end) const;
     int gainOf(const Toggle& toggle, VertexLookup& lookup) const;
     Toggle bestToggle(const Place& v, VertexLookup& lookup) const;
     void removeNearest(const Place& v, VertexLookup& lookup, std::vector<Place>& out) const;
@@ -94,9 +97,18 @@ int Shaper::faults(const Place& v, VertexLookup& lookup, const Toggle* toggle) c
         const std::optional<Place> end = lookup.vertexAt(endOfEdge(v, here, std::size_t(e >> 1), e & 1, lookup));
         if (!end) continue;
         const VertexPattern& other = vertexPattern(view(*end, lookup, toggle).kept);
-        count += other.edge[std::size_t(e ^ 1)] != pattern.edge[std::size_t(e)];
+        const Alternation own = pattern.edge[std::size_t(e)];
+        count += other.edge[std::size_t(e ^ 1)] != own || tears(own, v, *end);
     }
     return count;
+}
+
+// Do removed cells come apart at a lattice edge that a sheet passes from one to the other? What is cut off there would become a
+// wall of its own.
+bool Shaper::tears(Alternation alternation, const Place& v, const Place& end) const {
+    if (alternation != Alternation::removedApart) return false;
+    const Vec3 a = grid_.lattice.corner(v.level, v.at), b = grid_.lattice.corner(end.level, end.at);
+    return bool(index_.closest((a + b) * 0.5, sheetAtEdge * norm(b - a)));
 }
 
 int Shaper::gainOf(const Toggle& toggle, VertexLookup& lookup) const {
@@ -145,7 +157,9 @@ void Shaper::removeNearest(const Place& v, VertexLookup& lookup, std::vector<Pla
     for (int e = 0; e < 6; ++e) {
         if (pattern.edge[std::size_t(e)] == Alternation::none || here.outside >> e & 1) continue;
         const std::optional<Place> end = lookup.vertexAt(endOfEdge(v, here, std::size_t(e >> 1), e & 1, lookup));
-        if (!end || vertexPattern(lookup.view(*end).kept).edge[std::size_t(e ^ 1)] == pattern.edge[std::size_t(e)]) continue;
+        if (!end) continue;
+        const Alternation other = vertexPattern(lookup.view(*end).kept).edge[std::size_t(e ^ 1)];
+        if (other == pattern.edge[std::size_t(e)] && !tears(other, v, *end)) continue;
         pick([&](int o) { return (o >> (e >> 1) & 1) == (e & 1); });
     }
 }

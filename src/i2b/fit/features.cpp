@@ -4,6 +4,7 @@
 #include "i2b/fit/fit.h"
 #include "i2b/front/replace_faces.h"
 #include <algorithm>
+#include <set>
 
 namespace i2b {
 namespace {
@@ -20,7 +21,8 @@ constexpr double onGeometry = 0.3; // of h: so far the geometry may bend away fr
 constexpr double reach = 2.2; // of h: no node is pulled farther to a feature
 constexpr double apart = 0.2; // of h: nodes beside each other keep so far apart
 constexpr double linesApart = 0.3; // of h: and so do lines beside each other to have a node each
-constexpr double nextReach = 0.3;  // of h: so far a node is pulled to a line beside the one that its neighbour is on
+constexpr double nextReach = 0.3;  // of h: so far a node is pulled to a line beside the one that its neighbour is on,
+constexpr double nextSharp = 0.6;  // or to a sharp edge there: the two of a thin plate are as near
 
 struct Crossing {
     double distance = 0; // in h
@@ -88,7 +90,7 @@ Crossing besideLine(const Band& band, const SurfaceIndex& index, const FeatureIn
         const Foot riser = footAt(index, way, fluid, h);
         if (!riser.found || norm(riser.point - way) < bridged * h || !turns(foot, riser)) continue;
         const Crossing c = crossingAt(band, index, features, x, lineUnder(index, features, foot, riser, fluid, h), free);
-        if (c.node < 0 || c.distance > nextReach) continue;
+        if (c.node < 0 || c.distance > (c.snap.kind == SnapKind::line ? nextSharp : nextReach)) continue;
         const Vec3 off = c.snap.point - own.point;
         if (norm(off - own.tangent * dot(off, own.tangent)) > linesApart * h) return c;
     }
@@ -120,24 +122,18 @@ std::size_t snapCorners(const Band& band, const SurfaceIndex& index, const Featu
     });
     std::erase_if(list, [](const Candidate& c) { return c.node < 0; });
     std::stable_sort(list.begin(), list.end(), [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
-    std::vector<std::uint32_t> taken;
-    std::size_t added = 0;
+    std::set<std::uint32_t> taken; // one node a corner
     for (const Snap& s : snaps) {
-        if (s.kind == SnapKind::corner) ++added;
+        if (s.kind == SnapKind::corner) taken.insert(features.closestCorner(s.point, std::numeric_limits<double>::infinity()).triangle);
     }
-    std::size_t before = added;
+    std::size_t added = 0;
     for (const Candidate& c : list) {
         Snap& snap = snaps[static_cast<std::size_t>(c.node)];
-        if (snap.kind == SnapKind::corner) {
-            taken.push_back(c.corner);
-            continue;
-        }
-        if (std::find(taken.begin(), taken.end(), c.corner) != taken.end()) continue;
-        taken.push_back(c.corner);
+        if (snap.kind == SnapKind::corner || !taken.insert(c.corner).second) continue;
         snap = {SnapKind::corner, c.point, {}};
         ++added;
     }
-    return added - before;
+    return added;
 }
 
 } // namespace

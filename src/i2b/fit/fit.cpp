@@ -6,6 +6,7 @@
 #include "i2b/fit/insert.h"
 #include "i2b/fit/off_wall.h"
 #include <algorithm>
+#include <numeric>
 
 namespace i2b {
 namespace {
@@ -13,6 +14,8 @@ namespace {
 constexpr int rings = 2;             // of core points behind the front that move
 constexpr double offTarget = 0.01;   // of h: a wall node farther from its target is worked on
 constexpr double unreached = 0.1;    // of h: a node farther from its feature is let go at the end
+constexpr double unfinished = 0.05;  // of h: a wall node farther from where it should be goes on,
+constexpr int finishingSweeps = 8;   // for so many sweeps at most
 constexpr double poorEnergy = 2.2;   // phi: nodes of such corners are worked on
 
 void grow(const Band& band, std::vector<std::uint8_t>& marked, int rings) {
@@ -38,6 +41,26 @@ std::vector<std::uint8_t> activeNodes(const Band& band, const SurfaceIndex& inde
     });
     grow(band, active, 1);
     return active;
+}
+
+// Those of some wall nodes that are not where they should be.
+std::vector<std::uint32_t> unfinishedOf(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Snap>& snaps,
+                                        const std::vector<Vec3>& x, const std::vector<std::uint32_t>& nodes) {
+    std::vector<std::uint8_t> isOff(nodes.size(), 0);
+    parallelFor(nodes.size(), [&](std::size_t i) {
+        const std::size_t n = nodes[i];
+        Vec3 to = x[n];
+        if (snaps[n].kind != SnapKind::none) {
+            to = snapLine(index, features, snaps[n], x[n], band.h[n]).point;
+        } else if (const WallTarget t = wallTarget(index, band, n, x[static_cast<std::size_t>(band.frontNode[n])], x[n]); t.found) {
+            to = t.point;
+        }
+        isOff[i] = norm(to - x[n]) > unfinished * band.h[n];
+    });
+    std::vector<std::uint32_t> off;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        if (isOff[i]) off.push_back(nodes[i]);
+    return off;
 }
 
 void store(const Band& band, const std::vector<Vec3>& x, Front& front) {
@@ -126,9 +149,23 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     const FeatureIndex features(graph);
     std::vector<Snap> snaps(band.walls);
     std::vector<std::uint8_t> active = activeNodes(band, index, x);
-    const auto pull = [&](std::vector<double> weights) {
+    const auto pullThose = [&](const std::vector<std::uint8_t>& nodes, std::vector<double> weights) {
         energy.wallWeights = std::move(weights);
-        if (!minimiseEnergy(band, index, features, snaps, active, x, energy, context)) summary.cutShort = true;
+        if (!minimiseEnergy(band, index, features, snaps, nodes, x, energy, context)) summary.cutShort = true;
+    };
+    const auto pull = [&](std::vector<double> weights) { pullThose(active, std::move(weights)); };
+    // At rims and in narrow places nodes come a little way in a sweep. They are few.
+    const auto finish = [&] {
+        std::vector<std::uint32_t> off(band.walls);
+        std::iota(off.begin(), off.end(), 0);
+        for (int sweep = 0; sweep < finishingSweeps; ++sweep) {
+            off = unfinishedOf(band, index, features, snaps, x, off);
+            if (off.empty()) return;
+            std::vector<std::uint8_t> around(band.movable, 0);
+            for (const std::uint32_t n : off) around[n] = 1;
+            grow(band, around, 1);
+            pullThose(around, {1e6});
+        }
     };
     const auto seekFeatures = [&] { return options.features && !energy.budget.isOver(); };
     pull({0.1, 10, 100});
@@ -153,6 +190,7 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     pull({1e5});
     if (seekFeatures()) snapAndSplit(); // what has come into view since
     pull({1e6});
+    finish();
     if (options.features) releaseUnreached(band, index, features, x, snaps);
     snapExactly(band, index, features, snaps, x, energy);
     summary.offCauses = findOffCauses(band, index, features, snaps, x, energy);

@@ -1,0 +1,67 @@
+// Proves, on plates without thickness in random poses: the wall around one is a single piece, tips and all; nodes at its rim do not
+// stop on the way; and no corner draws two nodes, between which a face would collapse.
+#include "pipeline/shapes.h"
+#include "pipeline/shape_run.h"
+#include "pipeline/stages_run.h"
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <numeric>
+
+namespace i2b::test {
+namespace {
+
+const Shape& plateShape() {
+    const auto plate = std::find_if(shapes().begin(), shapes().end(), [](const Shape& s) { return std::string(s.name) == "plate"; });
+    return *plate;
+}
+
+// Of faces that share vertices.
+std::size_t pieces(const FrontMesh& mesh) {
+    std::vector<int> root(mesh.n_vertices());
+    std::iota(root.begin(), root.end(), 0);
+    const auto find = [&](int v) {
+        while (root[std::size_t(v)] != v) v = root[std::size_t(v)] = root[std::size_t(root[std::size_t(v)])];
+        return v;
+    };
+    for (auto e : mesh.edges()) {
+        const auto he = mesh.halfedge_handle(e, 0);
+        root[std::size_t(find(mesh.from_vertex_handle(he).idx()))] = find(mesh.to_vertex_handle(he).idx());
+    }
+    std::size_t n = 0;
+    for (std::size_t v = 0; v < root.size(); ++v) n += root[v] == int(v);
+    return n;
+}
+
+constexpr unsigned poses = 12;
+
+class ThinPlatePoses : public testing::TestWithParam<unsigned> {}; // seed of the pose
+
+TEST_P(ThinPlatePoses, AreOnePieceWithOneNodeACorner) {
+    const ShapeGeometry g = posed(plateShape(), stagesSize, GetParam());
+    const ToMesh run(g.soup, stagesOptions());
+    EXPECT_EQ(run.front.validate(), "");
+    EXPECT_EQ(pieces(run.front.mesh), 1u);
+
+    std::vector<Vec3> corners;
+    for (const Snap& s : run.fitted.snaps)
+        if (s.kind == SnapKind::corner) corners.push_back(s.point);
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) EXPECT_GT(norm(corners[i] - corners[j]), 0.5 * stagesSize);
+}
+
+INSTANTIATE_TEST_SUITE_P(Many, ThinPlatePoses, testing::Range(0u, poses));
+
+// 6 % of them did when all nodes had the same number of sweeps.
+TEST(ThinPlates, FewNodesStopOnTheWay) {
+    std::size_t nodes = 0, far = 0;
+    for (unsigned seed = 0; seed < poses; ++seed) {
+        const ShapeGeometry g = posed(plateShape(), stagesSize, seed);
+        const ToMesh run(g.soup, stagesOptions());
+        for (std::size_t v = 0; v < run.front.front.size(); ++v) far += !run.painted.index->closest(wallPoint(run.front, v), 0.1 * stagesSize);
+        nodes += run.front.front.size();
+    }
+    EXPECT_LT(double(far), 0.04 * double(nodes));
+}
+
+} // namespace
+} // namespace i2b::test
