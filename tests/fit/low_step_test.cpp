@@ -1,4 +1,4 @@
-// Proves: the foot of a step lower than a cell has mesh edges along it, like the edge at its top: nodes go to it and vertices
+// Proves: the foot of a step lower than a cell has mesh edges along it, and so has the edge at its top: nodes go to it and vertices
 // are put on it, each face beside it lies on one part, and no two nodes of an edge are drawn to one place.
 #include "i2b/quality/quality_report.h"
 #include "pipeline/stages_run.h"
@@ -13,8 +13,17 @@ double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
     return norm(p - a - d * std::clamp(dot(p - a, d) / norm2(d), 0.0, 1.0));
 }
 
-// Of an outline, away from its corners: the share that has an edge between the two parts within 0.1 h.
-double captured(const Front& front, const std::array<Vec3, 4>& foot) {
+Vec3 faceNormal(const Front& front, FrontMesh::FaceHandle f) {
+    std::vector<Vec3> x;
+    for (auto v : front.mesh.fv_range(f)) x.push_back(wallPoint(front, static_cast<std::size_t>(v.idx())));
+    Vec3 area;
+    for (std::size_t i = 1; i + 1 < x.size(); ++i) area += cross(x[i] - x[0], x[i + 1] - x[0]);
+    return normalized(area);
+}
+
+// Of an outline, away from its corners: the share that has an edge between faces that isBorder() takes within 0.1 h.
+template <class IsBorder>
+double captured(const Front& front, const std::array<Vec3, 4>& foot, const IsBorder& isBorder) {
     int samples = 0, found = 0;
     for (std::size_t i = 0; i < 4; ++i) {
         const Vec3 a = foot[i], way = foot[(i + 1) % 4] - a;
@@ -25,13 +34,23 @@ double captured(const Front& front, const std::array<Vec3, 4>& foot) {
             found += std::any_of(front.mesh.edges_begin(), front.mesh.edges_end(), [&](FrontMesh::EdgeHandle e) {
                 const auto he = front.mesh.halfedge_handle(e, 0);
                 const FrontMesh::FaceHandle f = front.mesh.face_handle(he), g = front.mesh.opposite_face_handle(he);
-                if (!f.is_valid() || !g.is_valid() || front.part[static_cast<std::size_t>(f.idx())] == front.part[static_cast<std::size_t>(g.idx())]) return false;
+                if (!f.is_valid() || !g.is_valid() || !isBorder(f, g)) return false;
                 return distanceToSegment(p, wallPoint(front, static_cast<std::size_t>(front.mesh.from_vertex_handle(he).idx())),
                                          wallPoint(front, static_cast<std::size_t>(front.mesh.to_vertex_handle(he).idx()))) <= 0.1 * stagesSize;
             });
         }
     }
     return double(found) / samples;
+}
+
+// By edges between the two parts.
+double captured(const Front& front, const std::array<Vec3, 4>& foot) {
+    return captured(front, foot, [&](auto f, auto g) { return front.part[static_cast<std::size_t>(f.idx())] != front.part[static_cast<std::size_t>(g.idx())]; });
+}
+
+// By edges that fold by over 25 degrees.
+double folded(const Front& front, const std::array<Vec3, 4>& outline) {
+    return captured(front, outline, [&](auto f, auto g) { return dot(faceNormal(front, f), faceNormal(front, g)) < 0.906; });
 }
 
 void expectSound(const ToMesh& run) {
@@ -50,6 +69,9 @@ class LowStep : public testing::TestWithParam<double> {}; // height, in cells
 TEST_P(LowStep, FootIsCaptured) {
     const ToMesh run(plateInTop(GetParam() * stagesSize), stagesOptions());
     EXPECT_GT(captured(run.front, plateFoot()), 0.8);
+    std::array<Vec3, 4> top = plateFoot();
+    for (Vec3& p : top) p.z += GetParam() * stagesSize;
+    EXPECT_GT(folded(run.front, top), 0.8);
     expectSound(run);
 }
 

@@ -1,6 +1,7 @@
 // A front that prisms can be extruded from: around every vertex each fan of exposed faces has a direction with a
 // positive component on all of them, and an edge where kept and removed cells alternate comes apart in the same way at
-// both of its ends. Where that does not hold, a cell goes or, where it has room, comes back: the one after which the
+// both of its ends; removed cells that the geometry passes between do not come apart at an edge, or the tip of a sheet would be
+// a wall of its own. Where that does not hold, a cell goes or, where it has room, comes back: the one after which the
 // fewest vertices around it are at fault. Taking cells away only would eat up passages of one cell from their mouths.
 #pragma once
 #include "i2b/carve/room.h"

@@ -22,7 +22,7 @@ constexpr double reach = 2.2; // of h: no node is pulled farther to a feature
 constexpr double apart = 0.2; // of h: nodes beside each other keep so far apart
 constexpr double linesApart = 0.3; // of h: and so do lines beside each other to have a node each
 constexpr double nextReach = 0.3;  // of h: so far a node is pulled to a line beside the one that its neighbour is on,
-constexpr double nextSharp = 0.6;  // or to a sharp edge there: the two of a thin plate are as near
+constexpr double nextSharp = 0.6;  // or where both are sharp edges, as the two of a thin plate
 
 struct Crossing {
     double distance = 0; // in h
@@ -90,7 +90,8 @@ Crossing besideLine(const Band& band, const SurfaceIndex& index, const FeatureIn
         const Foot riser = footAt(index, way, fluid, h);
         if (!riser.found || norm(riser.point - way) < bridged * h || !turns(foot, riser)) continue;
         const Crossing c = crossingAt(band, index, features, x, lineUnder(index, features, foot, riser, fluid, h), free);
-        if (c.node < 0 || c.distance > (c.snap.kind == SnapKind::line ? nextSharp : nextReach)) continue;
+        const bool areSharp = held.kind == SnapKind::line && c.snap.kind == SnapKind::line;
+        if (c.node < 0 || c.distance > (areSharp ? nextSharp : nextReach)) continue;
         const Vec3 off = c.snap.point - own.point;
         if (norm(off - own.tangent * dot(off, own.tangent)) > linesApart * h) return c;
     }

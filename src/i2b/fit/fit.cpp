@@ -1,11 +1,13 @@
 #include "i2b/fit/fit.h"
 #include "i2b/core/parallel.h"
 #include "i2b/fit/bends.h"
+#include "i2b/fit/between.h"
 #include "i2b/fit/corner.h"
 #include "i2b/fit/folds.h"
 #include "i2b/fit/insert.h"
 #include "i2b/fit/off_wall.h"
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 namespace i2b {
@@ -15,7 +17,8 @@ constexpr int rings = 2;             // of core points behind the front that mov
 constexpr double offTarget = 0.01;   // of h: a wall node farther from its target is worked on
 constexpr double unreached = 0.1;    // of h: a node farther from its feature is let go at the end
 constexpr double unfinished = 0.05;  // of h: a wall node farther from where it should be goes on,
-constexpr int finishingSweeps = 8;   // for so many sweeps at most
+constexpr int finishingSweeps = 8;   // for so many sweeps at most; on a line only where the wall folds back as far as this
+constexpr double farBack = -0.17;    // cosine: the upper edge of a step would take the room of its foot
 constexpr double poorEnergy = 2.2;   // phi: nodes of such corners are worked on
 
 void grow(const Band& band, std::vector<std::uint8_t>& marked, int rings) {
@@ -43,7 +46,21 @@ std::vector<std::uint8_t> activeNodes(const Band& band, const SurfaceIndex& inde
     return active;
 }
 
-// Those of some wall nodes that are not where they should be.
+// Does the wall around a node fold far back, as at the rim of a sheet?
+bool foldsBack(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, std::size_t wall) {
+    std::array<Vec3, 8> normals;
+    std::size_t n = 0;
+    for (const BandEdge& e : band.edges[wall]) {
+        if (static_cast<std::size_t>(e.b) >= band.walls || n == normals.size()) continue;
+        if (const Foot foot = footOf(band, index, x, static_cast<std::size_t>(e.b)); foot.found) normals[n++] = foot.normal;
+    }
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (dot(normals[i], normals[j]) < farBack) return true;
+    return false;
+}
+
+// Those of some wall nodes that are not where they should be, and may go on.
 std::vector<std::uint32_t> unfinishedOf(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Snap>& snaps,
                                         const std::vector<Vec3>& x, const std::vector<std::uint32_t>& nodes) {
     std::vector<std::uint8_t> isOff(nodes.size(), 0);
@@ -55,12 +72,30 @@ std::vector<std::uint32_t> unfinishedOf(const Band& band, const SurfaceIndex& in
         } else if (const WallTarget t = wallTarget(index, band, n, x[static_cast<std::size_t>(band.frontNode[n])], x[n]); t.found) {
             to = t.point;
         }
-        isOff[i] = norm(to - x[n]) > unfinished * band.h[n];
+        isOff[i] = norm(to - x[n]) > unfinished * band.h[n] && (snaps[n].kind != SnapKind::line || foldsBack(band, index, x, n));
     });
     std::vector<std::uint32_t> off;
     for (std::size_t i = 0; i < nodes.size(); ++i)
         if (isOff[i]) off.push_back(nodes[i]);
     return off;
+}
+
+// At rims and in narrow places nodes come a little way in a sweep: these, a few in a hundred, go on with those around them, with
+// the weights of the last one.
+// Gives whether all sweeps were within the budget.
+bool finish(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Snap>& snaps, std::vector<Vec3>& x,
+            const EnergyOptions& energy, const Context& context) {
+    std::vector<std::uint32_t> off(band.walls);
+    std::iota(off.begin(), off.end(), 0);
+    for (int sweep = 0; sweep < finishingSweeps; ++sweep) {
+        off = unfinishedOf(band, index, features, snaps, x, off);
+        if (off.empty()) break;
+        std::vector<std::uint8_t> around(band.movable, 0);
+        for (const std::uint32_t n : off) around[n] = 1;
+        grow(band, around, 1);
+        if (!minimiseEnergy(band, index, features, snaps, around, x, energy, context)) return false;
+    }
+    return true;
 }
 
 void store(const Band& band, const std::vector<Vec3>& x, Front& front) {
@@ -149,23 +184,9 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     const FeatureIndex features(graph);
     std::vector<Snap> snaps(band.walls);
     std::vector<std::uint8_t> active = activeNodes(band, index, x);
-    const auto pullThose = [&](const std::vector<std::uint8_t>& nodes, std::vector<double> weights) {
+    const auto pull = [&](std::vector<double> weights) {
         energy.wallWeights = std::move(weights);
-        if (!minimiseEnergy(band, index, features, snaps, nodes, x, energy, context)) summary.cutShort = true;
-    };
-    const auto pull = [&](std::vector<double> weights) { pullThose(active, std::move(weights)); };
-    // At rims and in narrow places nodes come a little way in a sweep. They are few.
-    const auto finish = [&] {
-        std::vector<std::uint32_t> off(band.walls);
-        std::iota(off.begin(), off.end(), 0);
-        for (int sweep = 0; sweep < finishingSweeps; ++sweep) {
-            off = unfinishedOf(band, index, features, snaps, x, off);
-            if (off.empty()) return;
-            std::vector<std::uint8_t> around(band.movable, 0);
-            for (const std::uint32_t n : off) around[n] = 1;
-            grow(band, around, 1);
-            pullThose(around, {1e6});
-        }
+        if (!minimiseEnergy(band, index, features, snaps, active, x, energy, context)) summary.cutShort = true;
     };
     const auto seekFeatures = [&] { return options.features && !energy.budget.isOver(); };
     pull({0.1, 10, 100});
@@ -190,7 +211,7 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     pull({1e5});
     if (seekFeatures()) snapAndSplit(); // what has come into view since
     pull({1e6});
-    finish();
+    if (!finish(band, index, features, snaps, x, energy, context)) summary.cutShort = true;
     if (options.features) releaseUnreached(band, index, features, x, snaps);
     snapExactly(band, index, features, snaps, x, energy);
     summary.offCauses = findOffCauses(band, index, features, snaps, x, energy);
