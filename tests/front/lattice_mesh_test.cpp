@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <map>
 #include <random>
+#include <set>
 
 namespace i2b::test {
 namespace {
@@ -129,6 +130,35 @@ TEST_P(RandomMesh, FacesMatchAndCellsClose) {
     }
 }
 
+// The corners of a cell are the points that its faces name, and its faces name no others, wherever the reader knows them at once:
+// for every cell without finer ones around it, and for no cell with a point amid an edge or a face.
+TEST_P(RandomMesh, CornersAreThePointsOfTheFaces) {
+    int known = 0, hanging = 0;
+    for (unsigned seed = 20 * GetParam(); seed < 20 * GetParam() + 20; ++seed) {
+        const CarvedAtRandom c = make(seed);
+        const LatticeMesh mesh(c.grid, c.kept);
+        LatticeMesh::Reader reader(mesh);
+        std::map<std::int64_t, std::set<std::int32_t>> named;
+        std::map<std::int64_t, std::pair<int, Index3>> cells;
+        forFaces(mesh, [&](std::int64_t rank, int level, const Index3& cell, const CellFace& face) {
+            named[rank].insert(face.points.begin(), face.points.begin() + face.vertices);
+            cells[rank] = {level, cell};
+        });
+        for (const auto& [rank, points] : named) {
+            std::array<std::int32_t, 8> corners;
+            if (reader.corners(cells[rank].first, cells[rank].second, corners)) {
+                EXPECT_EQ(std::set<std::int32_t>(corners.begin(), corners.end()), points) << "seed " << seed << ", cell " << rank;
+                ++known;
+            } else {
+                EXPECT_GT(mesh.levels(), 1) << "seed " << seed << ", cell " << rank;
+                hanging += points.size() > 8;
+            }
+        }
+    }
+    EXPECT_GT(known, 1000);
+    EXPECT_GT(hanging, 100);
+}
+
 // Base cells of 2^n grids, each split along axes of its own choice: bit a of splits[i] splits base cell i along axis a.
 CellGrid splitByHand(const Index3& count, const std::vector<unsigned>& splits) {
     CellGrid grid;
@@ -145,6 +175,22 @@ CellGrid splitByHand(const Index3& count, const std::vector<unsigned>& splits) {
         if (!isEmpty(*base)) grid.levels.push_back({level, overlapping(*base, allAxes(0), level)});
     }
     return grid;
+}
+
+// By bits: the point of the lattice at that end of the cell.
+TEST(LatticeMesh, CornersLieWhereTheirBitsSay) {
+    const CellGrid grid = splitByHand({2, 1, 1}, {0, 0});
+    KeptCells all;
+    all.levels.push_back(grid.levels[0].cells);
+    const LatticeMesh mesh(grid, all);
+    const std::vector<Vec3> points = mesh.latticePoints();
+    LatticeMesh::Reader reader(mesh);
+    std::array<std::int32_t, 8> corners;
+    ASSERT_TRUE(reader.corners(0, {1, 0, 0}, corners));
+    for (std::size_t k = 0; k < 8; ++k) {
+        const Vec3 x = points[static_cast<std::size_t>(corners[k])] - grid.lattice.origin;
+        EXPECT_EQ(x, (Vec3{(k & 1) ? 2.0 : 1.0, (k >> 1 & 1) ? 0.5 : 0.0, (k >> 2) ? 0.75 : 0.0})) << k;
+    }
 }
 
 std::string faultOf(const CellGrid& grid) {

@@ -56,6 +56,10 @@ BandMarks markBand(const LatticeMesh& mesh, int rings) {
         forMarked(mesh, mesh.levels(), [&](int l) -> const RankedMask& { return mesh.cells(l); }, cells,
                   [&](LatticeMesh::Reader& reader, int l, const Index3& c, std::size_t rank) {
                       if (cells[rank] != now) return;
+                      if (std::array<std::int32_t, 8> corners; reader.corners(l, c, corners)) {
+                          for (const std::int32_t p : corners) set(marks.points[static_cast<std::size_t>(p)], static_cast<std::uint8_t>(now + 1));
+                          return;
+                      }
                       reader.faces(l, c, [&](const CellFace& face) {
                           for (std::size_t i = 0; i < face.vertices; ++i) {
                               set(marks.points[static_cast<std::size_t>(face.points[i])], static_cast<std::uint8_t>(now + 1));

@@ -1,5 +1,6 @@
 #include "i2b/fit/band_pieces.h"
 #include <algorithm>
+#include <bit>
 
 namespace i2b {
 namespace {
@@ -31,6 +32,22 @@ double stretch(const Vec3& size, const Vec3& normal) {
     return size[axis] / std::min(size[(axis + 1) % 3], size[(axis + 2) % 3]);
 }
 
+// A cell with eight vertices, in the order in which its faces name them.
+void addBox(const Band& band, const std::array<std::int32_t, 8>& nodes, BandPieces& out) {
+    for (const std::size_t k : {0u, 4u, 6u, 2u, 1u, 3u, 7u, 5u}) {
+        const Vec3& x = band.start[static_cast<std::size_t>(nodes[k])];
+        Corner corner{{nodes[k], -1, -1, -1}, {}, 1};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::int32_t n = nodes[k ^ std::size_t(1) << axis];
+            corner.node[axis + 1] = n;
+            corner.inverseLength[axis] = static_cast<float>(1 / norm(band.start[static_cast<std::size_t>(n)] - x));
+            if (n > nodes[k]) out.edges.push_back(edgeKey(nodes[k], n));
+        }
+        if (std::popcount(k) % 2 != 0) std::swap(corner.node[1], corner.node[2]), std::swap(corner.inverseLength[0], corner.inverseLength[1]);
+        out.corners.push_back(corner);
+    }
+}
+
 } // namespace
 
 void BandPieces::settle() {
@@ -41,6 +58,11 @@ void BandPieces::settle() {
 
 void addCoreCell(const Band& band, LatticeMesh::Reader& reader, int level, const Index3& c,
                  const std::vector<std::int32_t>& nodeOf, std::vector<CellVertex>& vertices, BandPieces& out) {
+    if (std::array<std::int32_t, 8> nodes; reader.corners(level, c, nodes)) {
+        for (std::int32_t& n : nodes) n = nodeOf[static_cast<std::size_t>(n)];
+        addBox(band, nodes, out);
+        return;
+    }
     vertices.clear();
     reader.faces(level, c, [&](const CellFace& face) {
         for (std::size_t i = 0; i < face.vertices; ++i) {

@@ -217,12 +217,31 @@ LatticeMesh::Reader::Spot LatticeMesh::Reader::spotAt(int level, const Index3& a
     return spot;
 }
 
+std::int32_t LatticeMesh::Reader::pointAt(const Spot& spot, int octant) const {
+    if (spot.front < 0) return spot.point;
+    const FrontPoint& front = mesh_.front_[static_cast<std::size_t>(spot.front)];
+    const std::uint8_t component = vertexPattern(front.pattern).component[static_cast<std::size_t>(octant)];
+    return component > 0 && component != noFan ? front.firstExtra + component - 1 : spot.point;
+}
+
+bool LatticeMesh::Reader::corners(int level, const Index3& c, std::array<std::int32_t, 8>& points) {
+    enter(level, c);
+    if (hasFiner_) return false;
+    for (int k = 0; k < 8; ++k) {
+        const Spot spot = spotAt(level, {4 * (c[0] + (k & 1)), 4 * (c[1] + (k >> 1 & 1)), 4 * (c[2] + (k >> 2))});
+        points[static_cast<std::size_t>(k)] = pointAt(spot, ~k & 7);
+    }
+    return true;
+}
+
 void LatticeMesh::Reader::addVertex(CellFace& face, int level, const Piece& piece, const Index3& at) {
     const Spot spot = spotAt(level, at);
     if (spot.point < 0) return; // no vertex on the middle of this edge
     const std::size_t i = face.vertices++;
-    face.points[i] = spot.point;
-    if (spot.front < 0) return;
+    if (spot.front < 0) {
+        face.points[i] = spot.point;
+        return;
+    }
     // The octant of the cell beside the vertex, on the face's side of it.
     const int axis = piece.axis;
     int octant = piece.side ? 0 : 1 << axis;
@@ -230,13 +249,11 @@ void LatticeMesh::Reader::addVertex(CellFace& face, int level, const Piece& piec
         const auto a = static_cast<std::size_t>((axis + k) % 3);
         if (at[a] != piece.high[a]) octant |= 1 << a;
     }
-    const FrontPoint& front = mesh_.front_[static_cast<std::size_t>(spot.front)];
-    const VertexPattern& pattern = vertexPattern(front.pattern);
-    const std::uint8_t component = pattern.component[static_cast<std::size_t>(octant)];
-    if (component > 0 && component != noFan) face.points[i] = front.firstExtra + component - 1;
+    face.points[i] = pointAt(spot, octant);
     if (face.kind == FaceKind::front) {
+        const FrontPoint& front = mesh_.front_[static_cast<std::size_t>(spot.front)];
         const int across = octant & ~(1 << axis);
-        face.fans[i] = front.firstFan + pattern.fan[static_cast<std::size_t>(quarterFace(axis, across))];
+        face.fans[i] = front.firstFan + vertexPattern(front.pattern).fan[static_cast<std::size_t>(quarterFace(axis, across))];
     }
 }
 

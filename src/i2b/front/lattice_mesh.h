@@ -71,6 +71,9 @@ class LatticeMesh {
                 for (int i = 0; i < n; ++i) visit(found_[static_cast<std::size_t>(i)]);
             }
         }
+        // The points at the corners of a kept cell that has no others, by bits x, y, z (1: the upper end); false where finer cells
+        // may have put points on its edges and faces.
+        bool corners(int level, const Index3& c, std::array<std::int32_t, 8>& points);
         std::int64_t cell(int level, const Index3& c) { return kept_[std::size_t(level)].rank(c); }
         // Kept cells around a point (of its own level): calls visit(level, cell) up to eight times, with repeats.
         template <class Visit>
@@ -101,6 +104,7 @@ class LatticeMesh {
         void enter(int level, const Index3& c);
         bool mayHaveFiner(int level, const Index3& node);
         Spot spotAt(int level, const Index3& at);
+        std::int32_t pointAt(const Spot& spot, int octant) const; // as the cell in an octant around it has it
         Spot findPoint(const Index3& at, const LevelTriple& quarter, int finest);
 
         const LatticeMesh& mesh_;
