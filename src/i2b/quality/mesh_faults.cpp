@@ -15,7 +15,8 @@ namespace {
 
 using Index = std::size_t;
 constexpr double flat = 1e-9; // a pyramid below this part of its cell's size counts as wrong
-constexpr double doubtful = 2 * undividedShare; // of tetrahedra: up to there their quality is looked at
+constexpr double doubtful = 20 * undividedShare; // of tetrahedra: up to there their quality is looked at
+constexpr double clearShare = 2 * undividedShare; // of tetrahedra: faces that a glance finds over that need no look
 constexpr double mostThin = 0.02; // faces for each thin cell that may have a fault of one kind for it to count
 
 bool isBad(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::span<const FaceShape> shapes, std::int32_t cell,
@@ -80,14 +81,14 @@ void MeshFaults::measureCells() {
 // Of all faces. With S the least of V^2 / L^6, V six times the volume of a tetrahedron and L twice the reach from the face's
 // centre to its vertices and the cells' centres, no height is under 2 sqrt(S) of the apex's own, and no width under 4 sqrt(S)
 // but for its scale: over S = (share / 2)^2 tetShare() is over that share where no corner is reflex and the twist has as much to
-// spare.
+// spare; and the quality of tetrahedra, which goes with S squared, is far over 1e-15.
 void MeshFaults::measureFaces() {
     constexpr double margin = 1.01;
     QuadBounds bounds = openQuadBounds;
     bounds.cosine = severeCosine_, bounds.weight = limits_.faceWeight, bounds.ratio = limits_.volumeRatio, bounds.skewness = limits_.skewness;
     bounds.pyramid3 = std::max(0.0, 3 * limits_.pyramidVolume * margin);
-    bounds.tetShape = margin * doubtful * doubtful / 4;
-    bounds.twist = leastTwist + doubtful;
+    bounds.tetShape = margin * clearShare * clearShare / 4;
+    bounds.twist = leastTwist + clearShare;
     parallelChunks(faceFlags_.size(), 4096, [&](Index begin, Index end, Index) {
         QuadGlance quads(mesh_, moments_.data(), bounds);
         const auto closely = [&](Index f) { measureFaceAt(static_cast<std::int32_t>(f)); };
@@ -175,7 +176,14 @@ std::vector<std::int32_t> MeshFaults::cellsAround(const std::vector<std::int32_t
 void MeshFaults::update(const std::vector<std::int32_t>& movedPoints, const std::vector<std::int32_t>& seeds) {
     for (const std::int32_t p : movedPoints) moved_[Index(p)] = 1;
     std::vector<std::int32_t> cells = cellsAround(seeds);
+    for (const std::int32_t c : cells) changed_[Index(c)] = 0;
+    for (const std::int32_t p : movedPoints) moved_[Index(p)] = 0;
+    update(std::move(cells));
+}
+
+void MeshFaults::update(std::vector<std::int32_t> cells) {
     std::sort(cells.begin(), cells.end());
+    for (const std::int32_t c : cells) changed_[Index(c)] = 1;
     parallelChunks(cells.size(), 256, [&](Index begin, Index end, Index) {
         CellFaceShapes shapes(mesh_);
         for (Index i = begin; i < end; ++i) measureCellAt(cells[i], shapes);
@@ -187,7 +195,6 @@ void MeshFaults::update(const std::vector<std::int32_t>& movedPoints, const std:
         }
     });
     for (const std::int32_t c : cells) changed_[Index(c)] = 0;
-    for (const std::int32_t p : movedPoints) moved_[Index(p)] = 0;
 }
 
 std::vector<std::int32_t> MeshFaults::badCells() const {

@@ -153,8 +153,7 @@ std::int64_t Optimiser::sweep(std::vector<Task>& tasks, const Move& move, Restin
             Worker worker(*this);
             for (Index i = begin; i < end; ++i) hasMoved[i] = move(tasks[group[i]], worker);
         });
-        std::vector<std::int32_t> points, seeds;
-        MeshNodes::Moved moved;
+        std::vector<std::int32_t> changed; // each once: no task of a group reads what another changes
         for (Index i = 0; i < group.size(); ++i) {
             const Task& task = tasks[group[i]];
             if (resting && !hasMoved[i]) resting->stays(task.node);
@@ -162,13 +161,10 @@ std::int64_t Optimiser::sweep(std::vector<Task>& tasks, const Move& move, Restin
             ++moves;
             if (resting) resting->moves(task.cells);
             if (tracked_) tracked_->try_emplace(task.node, task.node, task.cell, from[i]);
-            moved.clear();
-            nodes_.follow(task.node, nodes_.place(task.node), moved);
-            for (const auto& [p, x] : moved) points.push_back(p);
-            seeds.insert(seeds.end(), task.cells.begin(), task.cells.end());
+            changed.insert(changed.end(), task.cells.begin(), task.cells.end());
         }
         if (resting) resting->next();
-        faults_.update(points, seeds);
+        faults_.update(std::move(changed));
     }
     return moves;
 }
