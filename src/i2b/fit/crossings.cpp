@@ -95,7 +95,7 @@ Between Finder::bendBeside(std::size_t held, std::size_t other) const {
     const Vec3 &tangent = marks.tangents[held], edge = x[other] - x[held], fluid = (frontOf(held) + frontOf(other)) * 0.5;
     if (tangent == Vec3{} || std::abs(dot(tangent, normalized(edge))) > steep) return {};
     const double h = std::max(band.h[held], band.h[other]);
-    if (index.closest(x[held] + edge * 0.5, flat * h)) return {};
+    if (index.closeEnough(x[held] + edge * 0.5, flat * h, flat * h)) return {};
     const double foldNow = foldAt(held, other, edge);
     Between bend;
     double farthest = bent * h;
@@ -117,7 +117,7 @@ Between Finder::bendBeside(std::size_t held, std::size_t other) const {
 Between Finder::bendOn(std::size_t p, std::size_t q) const {
     const Vec3 edge = x[q] - x[p], fluid = (frontOf(p) + frontOf(q)) * 0.5;
     const double h = std::max(band.h[p], band.h[q]);
-    if (index.closest(x[p] + edge * 0.5, flat * h)) return {};
+    if (index.closeEnough(x[p] + edge * 0.5, flat * h, flat * h)) return {};
     Between bend;
     double farthest = bent * h;
     for (int i = 2; i < looks - 1; ++i) {

@@ -86,7 +86,7 @@ Crossing besideLine(const Band& band, const SurfaceIndex& index, const FeatureIn
     const Vec3 fluid = (x[static_cast<std::size_t>(band.frontNode[a])] + x[static_cast<std::size_t>(band.frontNode[b])]) * 0.5;
     for (const double share : {0.5, 0.25}) {
         const Vec3 way = own.point + (x[b] - own.point) * share;
-        if (index.closest(way, bridged * h)) continue; // most are
+        if (index.closeEnough(way, bridged * h, bridged * h)) continue; // most are
         const Foot riser = footAt(index, way, fluid, h);
         if (!riser.found || norm(riser.point - way) < bridged * h || !turns(foot, riser)) continue;
         const Crossing c = crossingAt(band, index, features, x, lineUnder(index, features, foot, riser, fluid, h), free);
@@ -206,7 +206,7 @@ std::size_t snapToFeatures(const Band& band, const Front& front, const SurfaceIn
             crossings[2 * e] = crossingOf(band, index, features, x, lineBetween(index, features, feet[a], feet[b], fluid, std::max(band.h[a], band.h[b])), p, q);
         } else if (feet[a].found && feet[b].found) {
             const double h = std::max(band.h[a], band.h[b]);
-            const ClosestPoint near = index.closest((x[a] + x[b]) * 0.5, steps * h); // most edges lie on what they stand on
+            const ClosestPoint near = index.closeEnough((x[a] + x[b]) * 0.5, steps * h, flat * h); // most edges lie on what they stand on
             if (!near) {
                 const std::array<Crossing, 2> ends = stepOf(band, index, features, x, feet, p, q);
                 crossings[2 * e] = ends[0], crossings[2 * e + 1] = ends[1];

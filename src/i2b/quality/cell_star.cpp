@@ -27,8 +27,11 @@ Index placeIn(const std::vector<std::int32_t>& sorted, std::int32_t value) {
 } // namespace
 
 bool CellStar::uses(std::int32_t face) const {
+    constexpr Index few = 8; // one by one is faster
     const auto v = mesh_.face(face);
-    return std::any_of(v.begin(), v.end(), [&](std::int32_t p) { return placeIn(points_, p) < points_.size(); });
+    return std::any_of(v.begin(), v.end(), [&](std::int32_t p) {
+        return points_.size() <= few ? std::find(points_.begin(), points_.end(), p) != points_.end() : std::binary_search(points_.begin(), points_.end(), p);
+    });
 }
 
 const std::vector<std::int32_t>& CellStar::cellsAt(const std::vector<std::int32_t>& points, const std::vector<std::int32_t>& from) {
