@@ -16,7 +16,7 @@ namespace {
 constexpr int rings = 2;             // of core points behind the front that move
 constexpr double offTarget = 0.01;   // of h: a wall node farther from its target is worked on
 constexpr double unreached = 0.1;    // of h: a node farther from its feature is let go at the end
-constexpr double unfinished = 0.05;  // of h: a wall node farther from where it should be goes on,
+constexpr double unfinished = 0.05;  // of h: a wall node farther from its target after that goes on,
 constexpr int finishingSweeps = 8;   // for so many sweeps at most; on a line only where the wall folds back as far as this
 constexpr double farBack = -0.17;    // cosine: the upper edge of a step would take the room of its foot
 constexpr double poorEnergy = 2.2;   // phi: nodes of such corners are worked on
@@ -33,14 +33,19 @@ void grow(const Band& band, std::vector<std::uint8_t>& marked, int rings) {
     }
 }
 
-// Nodes off their target or in a poor corner, and those around them.
-std::vector<std::uint8_t> activeNodes(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x) {
+// How far a wall node is from where it should be: on the line or corner that it is snapped to, else on the surface.
+double wayToGo(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const Snap& snap, const std::vector<Vec3>& x, std::size_t n) {
+    if (snap.kind != SnapKind::none) return norm(snapLine(index, features, snap, x[n], band.h[n]).point - x[n]);
+    const WallTarget t = wallTarget(index, band, n, x[static_cast<std::size_t>(band.frontNode[n])], x[n]);
+    return t.found ? norm(t.point - x[n]) : 0;
+}
+
+// Nodes off their target, snapped or in a poor corner, and those around them.
+std::vector<std::uint8_t> activeNodes(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Snap>& snaps,
+                                      const std::vector<Vec3>& x) {
     std::vector<std::uint8_t> active = nodesOfPoorCorners(band, x, poorEnergy);
-    parallelFor(band.movable, [&](std::size_t n) {
-        if (n < band.walls && !active[n]) {
-            const WallTarget t = wallTarget(index, band, n, x[static_cast<std::size_t>(band.frontNode[n])], x[n]);
-            active[n] = t.found && norm(t.point - x[n]) > offTarget * band.h[n];
-        }
+    parallelFor(band.walls, [&](std::size_t n) {
+        active[n] = active[n] || snaps[n].kind != SnapKind::none || wayToGo(band, index, features, snaps[n], x, n) > offTarget * band.h[n];
     });
     grow(band, active, 1);
     return active;
@@ -66,13 +71,8 @@ std::vector<std::uint32_t> unfinishedOf(const Band& band, const SurfaceIndex& in
     std::vector<std::uint8_t> isOff(nodes.size(), 0);
     parallelFor(nodes.size(), [&](std::size_t i) {
         const std::size_t n = nodes[i];
-        Vec3 to = x[n];
-        if (snaps[n].kind != SnapKind::none) {
-            to = snapLine(index, features, snaps[n], x[n], band.h[n]).point;
-        } else if (const WallTarget t = wallTarget(index, band, n, x[static_cast<std::size_t>(band.frontNode[n])], x[n]); t.found) {
-            to = t.point;
-        }
-        isOff[i] = norm(to - x[n]) > unfinished * band.h[n] && (snaps[n].kind != SnapKind::line || foldsBack(band, index, x, n));
+        isOff[i] = wayToGo(band, index, features, snaps[n], x, n) > unfinished * band.h[n] &&
+                   (snaps[n].kind != SnapKind::line || foldsBack(band, index, x, n));
     });
     std::vector<std::uint32_t> off;
     for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -139,14 +139,6 @@ void releaseUnreached(const Band& band, const SurfaceIndex& index, const Feature
     });
 }
 
-// Newly snapped nodes, and those around them, are worked on too.
-void activateSnapped(const Band& band, const std::vector<Snap>& snaps, std::vector<std::uint8_t>& active) {
-    std::vector<std::uint8_t> around(band.movable, 0);
-    for (std::size_t n = 0; n < band.walls; ++n) around[n] = snaps[n].kind != SnapKind::none;
-    grow(band, around, 1);
-    for (std::size_t n = 0; n < band.movable; ++n) active[n] = active[n] || around[n];
-}
-
 // Nodes that should be on a feature besides, and vertices where edges still cross one.
 void seekOnce(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features, std::vector<Vec3>& x,
               std::vector<Snap>& snaps, FitSummary& summary) {
@@ -183,33 +175,34 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
 
     const FeatureIndex features(graph);
     std::vector<Snap> snaps(band.walls);
-    std::vector<std::uint8_t> active = activeNodes(band, index, x);
+    std::vector<std::uint8_t> active = activeNodes(band, index, features, snaps, x);
     const auto pull = [&](std::vector<double> weights) {
         energy.wallWeights = std::move(weights);
         if (!minimiseEnergy(band, index, features, snaps, active, x, energy, context)) summary.cutShort = true;
     };
-    const auto seekFeatures = [&] { return options.features && !energy.budget.isOver(); };
-    pull({0.1, 10, 100});
-    active = activeNodes(band, index, x);
-    if (seekFeatures()) {
+    const auto snap = [&] {
+        if (!options.features || energy.budget.isOver()) return false;
         snapToFeatures(band, front, index, features, x, snaps);
         snapFolds(band, front, index, features, x, snaps);
-        activateSnapped(band, snaps, active);
-    }
-    pull({1e3});
-    active = activeNodes(band, index, x);
+        return true;
+    };
     const auto snapAndSplit = [&] {
-        snapToFeatures(band, front, index, features, x, snaps);
-        snapFolds(band, front, index, features, x, snaps);
+        if (!snap()) return;
         store(band, x, front);
         const std::size_t split = splitAlongFeatures(front, band, index, features, x, snaps);
         summary.split += split;
         if (split > 0) renewPrisms(band, front);
-        activateSnapped(band, snaps, active);
     };
-    if (seekFeatures()) snapAndSplit();
+    pull({0.1, 10, 100});
+    snap();
+    active = activeNodes(band, index, features, snaps, x);
+    pull({1e3});
+    snapAndSplit();
+    active = activeNodes(band, index, features, snaps, x);
     pull({1e5});
-    if (seekFeatures()) snapAndSplit(); // what has come into view since
+    snapAndSplit(); // what has come into view since
+    const std::vector<std::uint8_t> late = activeNodes(band, index, features, snaps, x); // those worked on go on too: more room
+    for (std::size_t n = 0; n < band.movable; ++n) active[n] = active[n] || late[n];
     pull({1e6});
     if (!finish(band, index, features, snaps, x, energy, context)) summary.cutShort = true;
     if (options.features) releaseUnreached(band, index, features, x, snaps);
