@@ -17,7 +17,7 @@ constexpr std::size_t mostCells = 4;    // of a group
 constexpr std::size_t mostThinCells = 16; // the same of layers in a column
 constexpr std::size_t mostFlat = 200;    // thin cells of a small determinant
 constexpr double stackedShare = 0.5;    // of the largest face of two cells, that they meet in
-constexpr int mostConcave = 1;          // cells that a merge may make concave
+constexpr int mostConcave = 2;          // cells that a change may make concave: those beside a divided face
 
 struct Verdict {
     std::array<std::int64_t, dictionaryLimitCount + 10> counts{}; // of everything that a check names
