@@ -25,7 +25,7 @@ struct Case {
     const char* options;
 };
 
-const std::array<Case, 11> cases{{
+const std::array<Case, 12> cases{{
     {"Engine2Cyl", nullptr, "shared/engine-2cyl.obj.gz", "--scale 0.001 --size 0.004"},
     {"MotorBike", nullptr, "openfoam/motorBike.obj.gz", "--size 0.02 --box -5 -4 0 15 4 8 --max-size 1"},
     {"DrivAer", nullptr, "shared/drivaer-body.obj.gz shared/drivaer-frontWheels.obj.gz shared/drivaer-rearWheels.obj.gz",
@@ -41,6 +41,7 @@ const std::array<Case, 11> cases{{
     {"Engine", "engine", nullptr, "--size 0.012"},
     {"EngineJacket", "engine", nullptr, "--size 0.004 --seed 0.152 0.053 0.40"},
     {"Missile", "missile", nullptr, "--size 0.02 --layers 2"},
+    {"EngineLayers", "engine", nullptr, "--size 0.0138 --layers 5"},
     {"EngineLayersByPart", "engine", nullptr,
      "--size 0.012 --layers 4 --first-layer 0.0005 --growth 1.2 --part-layers '.*head.*=none' --part-layers 'exhaust.*=2,first=0.001' "
      "--part-layers 'oil_pan=6'"},
@@ -117,6 +118,7 @@ TEST_P(Cases, EndWithAMeshThatOpenFoamTakes) {
     EXPECT_EQ(report.negativeVolumeCells, 0);
     EXPECT_EQ(report.wrongOrientedFaces, 0);
     EXPECT_EQ(report.openCells, 0);
+    EXPECT_EQ(report.dictionaryFaces, 0);
 
     if (std::system("command -v checkMesh > /dev/null") != 0) GTEST_SKIP() << "OpenFOAM's checkMesh is not installed";
     ASSERT_EQ(run("checkMesh -case case -allTopology", "topology.log"), 0);
