@@ -1,7 +1,6 @@
 #include "i2b/geometry/feature_edges.h"
-#include "i2b/core/parallel.h"
+#include "i2b/core/bucket_sort.h"
 #include <algorithm>
-#include <tbb/parallel_sort.h>
 
 namespace i2b {
 namespace {
@@ -66,7 +65,7 @@ std::vector<Side> collectSides(const FeatureSoup& soup, FeatureGraph& graph) {
             addSides(bridges, {keyOf(v[k], v[(k + 1) % 3]), static_cast<std::uint32_t>(t), v[(k + 2) % 3]}, 8,
                      sides);
     }
-    tbb::parallel_sort(sides);
+    bucketSort(sides, soup.points.size(), [](const Side& s) { return std::size_t(s.edge.a); });
     return sides;
 }
 

@@ -1,8 +1,8 @@
 #include "i2b/geometry/feature_soup.h"
-#include "i2b/core/parallel.h"
+#include "i2b/core/bucket_sort.h"
 #include <algorithm>
+#include <bit>
 #include <span>
-#include <tbb/parallel_sort.h>
 
 namespace i2b {
 namespace {
@@ -45,7 +45,8 @@ std::vector<std::uint32_t> weldTargets(std::span<const Vec3> points, const std::
     parallelFor(used.size(), [&](std::size_t i) {
         sorted[i] = {grid.at(points[used[i]]).hash(), used[i]};
     });
-    tbb::parallel_sort(sorted);
+    const auto bits = static_cast<int>(std::bit_width(sorted.size() / 4));
+    bucketSort(sorted, std::size_t(1) << bits, [&](const HashedPoint& h) { return static_cast<std::size_t>(bits == 0 ? 0 : h.hash >> (64 - bits)); });
     std::vector<std::uint32_t> target(points.size(), none);
     const double limit = tolerance * tolerance;
     parallelFor(sorted.size(), [&](std::size_t i) {
@@ -141,7 +142,7 @@ FeatureSoup weldSoup(const Surface& s, const FeatureLines& lines, FeatureGraph& 
         sorted[t] = {{target[v[0]], target[v[1]], target[v[2]]}, static_cast<std::uint32_t>(t)};
         std::sort(sorted[t].corners.begin(), sorted[t].corners.end());
     });
-    tbb::parallel_sort(sorted);
+    bucketSort(sorted, soup.points.size(), [](const SortedCorners& s) { return std::size_t(s.corners[0]); });
     for (std::size_t i = 0; i < sorted.size(); ++i) {
         const TriangleCorners& v = sorted[i].corners;
         if (v[0] == v[1] || v[1] == v[2]) {
