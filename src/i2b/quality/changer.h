@@ -1,0 +1,59 @@
+// What a single change of cells or faces does for a face beyond a limit: merging cells, as the paper does with poor ones (Wang and
+// Srinivasan 2002, section 4), or dividing a face. Each is judged on a small mesh of its own, by all that a check names.
+#pragma once
+#include "i2b/quality/dictionary_measure.h"
+#include "i2b/quality/local_edits.h"
+#include <array>
+#include <optional>
+
+namespace i2b {
+
+struct Verdict {
+    std::array<std::int64_t, dictionaryLimitCount + 10> counts{}; // of everything that a check names
+    std::int64_t faces = 0, concave = 0;                          // faces beyond limits, cells
+};
+
+Verdict judge(const PolyMesh& mesh, const DictionaryLimits& dictionary);
+// Fewer faces beyond limits, and nothing else worse?
+bool isBetter(const Verdict& now, const Verdict& before);
+
+// Two groups, or one, as they are.
+LocalEdits::Trial still(std::int32_t a, std::int32_t b);
+void apply(const LocalEdits::Trial& change, LocalEdits& edits);
+
+// Keeps references.
+class Changer {
+  public:
+    using Trial = LocalEdits::Trial;
+    // thinFrom: cells from there on are layers of a height that was asked for.
+    Changer(const PolyMesh& mesh, const LocalEdits& edits, const DictionaryLimits& limits, std::int32_t thinFrom)
+        : mesh_(mesh), edits_(edits), limits_(limits), thinFrom_(thinFrom) {}
+
+    // What helps a face with the least change: dividing it, uniting its own two cells, else one of them with the neighbour
+    // across its largest face.
+    std::optional<Trial> find(std::int32_t face) const;
+    // All that may be done to a face's two cells and their faces, whether it helps or not.
+    std::vector<Trial> all(std::int32_t face) const;
+
+  private:
+    std::vector<std::int32_t> byFace(std::int32_t group) const; // neighbours, the one across the largest face first
+    bool mayUnite(std::int32_t a, std::int32_t b) const;
+    bool areStacked(std::int32_t a, std::int32_t b) const;
+    std::optional<Trial> unite(std::int32_t a, std::int32_t b) const;
+    std::optional<Trial> uniteAll(std::vector<std::int32_t> groups) const;
+    std::vector<std::int32_t> columnOf(std::int32_t group) const;
+    std::optional<Trial> uniteColumn(std::int32_t group) const;
+    std::vector<Trial> divisionsOf(std::int32_t face) const;
+    std::optional<Trial> divide(std::int32_t face, const Verdict& now) const;
+
+    const PolyMesh& mesh_;
+    const LocalEdits& edits_;
+    const DictionaryLimits& limits_;
+    std::int32_t thinFrom_;
+};
+
+// Two changes that together help a face that none helps alone: the first is any of its cells', the second what then helps.
+std::optional<std::array<LocalEdits::Trial, 2>> findPair(const PolyMesh& mesh, std::int32_t face, const DictionaryLimits& limits, std::int32_t thinFrom,
+                                                         const LocalEdits& edits);
+
+} // namespace i2b
