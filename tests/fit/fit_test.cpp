@@ -67,6 +67,41 @@ double energyOver(const Band& band, const std::vector<Vec3>& x) {
 
 class Fit : public testing::TestWithParam<unsigned> {};
 
+// Every movable node is in one block, with those of its kind; blocks of one colour share no corner, a wall node is with its front node.
+TEST_P(Fit, BlocksOfOneColourShareNoCorner) {
+    forSettings(GetParam(), [](const Setting& s, unsigned seed) {
+        const NodeBlocks& blocks = s.band.blocks;
+        const std::array<std::size_t, 4> kindFrom{0, s.band.walls, s.band.walls + s.band.fronts, s.band.movable};
+        std::vector<std::int64_t> blockOf(s.band.movable, -1), colourOf(blocks.size(), -1);
+        for (std::size_t b = 0; b < blocks.size(); ++b) {
+            for (const NodeBlocks::Kind kind : {NodeBlocks::wall, NodeBlocks::front, NodeBlocks::core}) {
+                for (const std::int32_t n : blocks.nodes(b, kind)) {
+                    const auto i = static_cast<std::size_t>(n);
+                    ASSERT_TRUE(i >= kindFrom[kind] && i < kindFrom[kind + 1u]) << "seed " << seed;
+                    ASSERT_EQ(blockOf[i], -1) << "seed " << seed;
+                    blockOf[i] = static_cast<std::int64_t>(b);
+                }
+            }
+        }
+        EXPECT_EQ(std::count(blockOf.begin(), blockOf.end(), -1), 0) << "seed " << seed;
+        for (std::size_t v = 0; v < s.band.walls; ++v) EXPECT_EQ(blockOf[v], blockOf[static_cast<std::size_t>(s.band.frontNode[v])]) << "seed " << seed;
+        for (std::size_t c = 0; c < blocks.colours().size(); ++c)
+            for (const std::uint32_t b : blocks.colours()[c]) colourOf[b] = static_cast<std::int64_t>(c);
+        EXPECT_EQ(std::count(colourOf.begin(), colourOf.end(), -1), 0) << "seed " << seed;
+        std::size_t clashes = 0;
+        for (const Corner& corner : s.band.corners) {
+            for (const std::int32_t m : corner.node) {
+                for (const std::int32_t n : corner.node) {
+                    const auto i = static_cast<std::size_t>(m), j = static_cast<std::size_t>(n);
+                    if (i >= s.band.movable || j >= s.band.movable || blockOf[i] == blockOf[j]) continue;
+                    clashes += colourOf[static_cast<std::size_t>(blockOf[i])] == colourOf[static_cast<std::size_t>(blockOf[j])];
+                }
+            }
+        }
+        EXPECT_EQ(clashes, 0u) << "seed " << seed;
+    });
+}
+
 TEST_P(Fit, StartIsValidAndBlendStaysSo) {
     forSettings(GetParam(), [](const Setting& s, unsigned seed) {
         EXPECT_EQ(inverted(s.band, s.band.start), 0u) << "seed " << seed;

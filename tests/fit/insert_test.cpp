@@ -96,7 +96,7 @@ TEST(Insert, DividesEdgesAcrossABorderOfFlushParts) {
     const std::size_t n = insert(run);
     EXPECT_GT(n, 30u);
     EXPECT_EQ(n, run.front.inserted.size());
-    EXPECT_LE(8 * over(reachOver(run.front, borderSide), clear), before);
+    EXPECT_LE(6 * over(reachOver(run.front, borderSide), clear), before);
     expectOnTheirEdges(run.front, *run.painted.index);
     std::size_t elsewhere = 0;
     for (std::size_t i = 0; i < n; ++i) {

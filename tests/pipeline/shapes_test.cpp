@@ -37,7 +37,7 @@ const Bar bars[] = {
     {"free-sheet", Side::outside, 0.93, 0.96, 0.03},
     {"nested-spheres", Side::inside, 0.00, 0.98, 0.02},
     {"cracked-cube", Side::outside, 0.77, 0.97, 0.02},
-    {"cracked-cube", Side::inside, 0.93, 0.97, 0.02},
+    {"cracked-cube", Side::inside, 0.92, 0.97, 0.02},
     {"tetrahedron", Side::outside, 0.96, 0.97, 0.02},
     {"tetrahedron", Side::inside, 0.92, 0.98, 0.02},
     {"rhombic-dodecahedron", Side::outside, 0.96, 0.97, 0.02},

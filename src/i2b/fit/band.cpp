@@ -274,6 +274,7 @@ Band buildBand(const LatticeMesh& mesh, const Front& front, int rings, const Wan
     pieces = {};
     band.cornersOf = rowsOfCorners(band, band.movable, 0, band.coreCorners);
     addPrisms(band, front);
+    band.blocks = NodeBlocks(band);
     return band;
 }
 

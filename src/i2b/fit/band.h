@@ -3,6 +3,7 @@
 // fixed points of the outermost cells.
 #pragma once
 #include "i2b/core/raw_vector.h"
+#include "i2b/fit/blocks.h"
 #include "i2b/front/front.h"
 #include "i2b/front/wanted_room.h"
 #include <array>
@@ -57,6 +58,7 @@ struct Band {
     Csr<BandEdge> edges;                  // per node: a is the node itself, b the other end
     Csr<std::int32_t> parents;            // per node: ends of the coarse edge or face on whose middle it hangs; or none
 
+    NodeBlocks blocks;                    // of the movable nodes
     WantedRoom room;                      // between front and wall
 
     std::size_t nodes() const { return start.size(); }

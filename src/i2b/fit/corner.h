@@ -1,5 +1,6 @@
 // Arithmetic of corner tetrahedra, shared by the steps of the fit.
 #pragma once
+#include "i2b/core/parallel.h"
 #include "i2b/fit/band.h"
 #include <bit>
 
@@ -28,8 +29,11 @@ inline double energyOf(double trace, double det) {
     return 0.25 * trace / (root * root) + 0.125 * (det + 1 / det);
 }
 
-// Colours 0, 1, ... such that nodes that share a corner differ; -1 for nodes that are not wanted. Greedy in node order.
-std::vector<std::int32_t> colourNodes(const Band& band, const std::vector<std::uint8_t>& wanted, std::int32_t& colours);
+// work(nodes) for those of a kind in each block, at once for blocks that share no corner.
+template <class Work>
+void sweepBlocks(const NodeBlocks& blocks, NodeBlocks::Kind kind, const Work& work) {
+    for (const std::vector<std::uint32_t>& colour : blocks.colours()) parallelFor(colour.size(), [&](std::size_t i) { work(blocks.nodes(colour[i], kind)); }, 1);
+}
 
 // Drops the components of a move that would leave the sides of the domain box.
 inline Vec3 withinSides(Vec3 move, std::uint8_t outside) {

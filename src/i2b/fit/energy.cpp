@@ -151,71 +151,36 @@ bool pathsStayFree(const Band& band, const SurfaceIndex& index, const std::vecto
 
 } // namespace
 
-std::vector<std::int32_t> colourNodes(const Band& band, const std::vector<std::uint8_t>& wanted, std::int32_t& colours) {
-    std::vector<std::int32_t> colour(band.movable, -1);
-    colours = 0;
-    for (std::size_t n = 0; n < band.movable; ++n) {
-        if (!wanted[n]) continue;
-        if (n + 1 < band.movable)
-            for (std::int32_t c : band.cornersOf[n + 1]) __builtin_prefetch(&band.corners[static_cast<std::size_t>(c)]);
-        std::uint64_t used = 0;
-        for (std::int32_t c : band.cornersOf[n]) {
-            for (std::int32_t m : band.corners[static_cast<std::size_t>(c)].node) {
-                if (static_cast<std::size_t>(m) < band.movable && colour[static_cast<std::size_t>(m)] >= 0) {
-                    used |= std::uint64_t(1) << std::min(63, colour[static_cast<std::size_t>(m)]);
-                }
-            }
-        }
-        // A front node and its wall nodes look at each other's place, corner or not.
-        const auto avoid = [&](std::int32_t m) {
-            if (colour[static_cast<std::size_t>(m)] >= 0) used |= std::uint64_t(1) << std::min(63, colour[static_cast<std::size_t>(m)]);
-        };
-        if (n < band.walls) avoid(band.frontNode[n]);
-        if (n >= band.walls && n < band.walls + band.fronts) {
-            for (std::int32_t fan : band.fansOf[n - band.walls]) avoid(fan);
-        }
-        const std::int32_t free = std::countr_one(used);
-        colour[n] = free;
-        colours = std::max(colours, free + 1);
-    }
-    return colour;
-}
-
 bool minimiseEnergy(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Snap>& snaps,
                     const std::vector<std::uint8_t>& active, std::vector<Vec3>& x, const EnergyOptions& options, const Context& context) {
-    std::int32_t colours = 0;
-    const std::vector<std::int32_t> colour = colourNodes(band, active, colours);
-    std::vector<std::vector<std::uint32_t>> nodes(static_cast<std::size_t>(colours));
-    for (std::size_t n = 0; n < band.movable; ++n) {
-        if (colour[n] >= 0) nodes[static_cast<std::size_t>(colour[n])].push_back(static_cast<std::uint32_t>(n));
-    }
     std::vector<Floor> floors(band.walls);
+    const auto moveOne = [&](std::size_t n, double lambda, LocalCorners& corners) {
+        corners.gather(band, n, x);
+        if (corners.empty()) return;
+        WallTerm wall;
+        if (n < band.walls) {
+            // Nodes on features may be in poorer corners: a sharp edge asks for them.
+            const double floor = snaps[n].kind == SnapKind::none ? options.floor : options.featureFloor;
+            if (lambda > 5) floors[n].update(corners.worstScaledJacobian(), floor);
+            wall = wallTerm(band, index, features, snaps[n], x, n, lambda * floors[n].factor);
+        }
+        if (n >= band.walls && n < band.walls + band.fronts && band.behind[n - band.walls]) wall = wayOut(band, index, x, n, lambda);
+        Vec3 d = bestMove(corners, wall, band.outside[n], options.cap * band.h[n], options.newtonSteps);
+        if (d == Vec3{}) return;
+        for (int half = 0; half < 3; ++half, d *= 0.5) {
+            if (!pathsStayFree(band, index, x, n, x[n] + d)) continue;
+            x[n] += d;
+            break;
+        }
+    };
     for (double lambda : options.wallWeights) {
         context.checkCancelled();
         if (options.budget.isOver()) return false;
-        for (const std::vector<std::uint32_t>& group : nodes) {
-            parallelChunks(group.size(), 64, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (const NodeBlocks::Kind kind : {NodeBlocks::wall, NodeBlocks::front, NodeBlocks::core}) {
+            sweepBlocks(band.blocks, kind, [&](std::span<const std::int32_t> nodes) {
                 LocalCorners corners;
-                for (std::size_t i = begin; i < end; ++i) {
-                    const std::size_t n = group[i];
-                    corners.gather(band, n, x);
-                    if (corners.empty()) continue;
-                    WallTerm wall;
-                    if (n < band.walls) {
-                        // Nodes on features may be in poorer corners: a sharp edge asks for them.
-                        const double floor = snaps[n].kind == SnapKind::none ? options.floor : options.featureFloor;
-                        if (lambda > 5) floors[n].update(corners.worstScaledJacobian(), floor);
-                        wall = wallTerm(band, index, features, snaps[n], x, n, lambda * floors[n].factor);
-                    }
-                    if (n >= band.walls && n < band.walls + band.fronts && band.behind[n - band.walls]) wall = wayOut(band, index, x, n, lambda);
-                    Vec3 d = bestMove(corners, wall, band.outside[n], options.cap * band.h[n], options.newtonSteps);
-                    if (d == Vec3{}) continue;
-                    for (int half = 0; half < 3; ++half, d *= 0.5) {
-                        if (!pathsStayFree(band, index, x, n, x[n] + d)) continue;
-                        x[n] += d;
-                        break;
-                    }
-                }
+                for (const std::int32_t n : nodes)
+                    if (active[static_cast<std::size_t>(n)]) moveOne(static_cast<std::size_t>(n), lambda, corners);
             });
         }
     }

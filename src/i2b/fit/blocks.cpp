@@ -1,0 +1,119 @@
+#include "i2b/fit/blocks.h"
+#include "i2b/core/parallel.h"
+#include "i2b/fit/band.h"
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <tbb/parallel_sort.h>
+
+namespace i2b {
+namespace {
+
+constexpr double edge = 10; // of a block, in h of its nodes
+constexpr std::uint8_t none = 255;
+
+struct Keyed { // a node and the block that it lies in
+    std::uint64_t key;
+    std::int32_t node;
+    friend auto operator<=>(const Keyed&, const Keyed&) = default;
+};
+
+// The lattice's nodes lie on multiples of h: half of one off, none lies between two blocks.
+std::uint64_t keyOf(const Vec3& place, double h, const Vec3& origin) {
+    const auto at = [&](double x) { return static_cast<std::uint64_t>(std::max(0.0, (x / h + 0.5) / edge)) & 0x7ffff; };
+    const Vec3 p = place - origin;
+    const auto level = static_cast<std::uint64_t>(std::ilogb(h) & 0x7f);
+    return level << 57 | at(p.x) << 38 | at(p.y) << 19 | at(p.z);
+}
+
+NodeBlocks::Kind kindOf(const Band& band, std::size_t n) {
+    return n < band.walls ? NodeBlocks::wall : n < band.walls + band.fronts ? NodeBlocks::front : NodeBlocks::core;
+}
+
+// The movable nodes that share a corner with one, or look at its place.
+template <class F>
+void forNodesAround(const Band& band, std::size_t n, const F& f) {
+    const auto offer = [&](std::int32_t m) {
+        if (static_cast<std::size_t>(m) < band.movable) f(static_cast<std::size_t>(m));
+    };
+    for (const std::int32_t c : band.cornersOf[n])
+        for (const std::int32_t m : band.corners[static_cast<std::size_t>(c)].node) offer(m);
+    if (n < band.walls) offer(band.frontNode[n]);
+    if (kindOf(band, n) == NodeBlocks::front)
+        for (const std::int32_t fan : band.fansOf[n - band.walls]) offer(fan);
+}
+
+} // namespace
+
+NodeBlocks::NodeBlocks(const Band& band) {
+    gather(band);
+    order(band);
+    colour(band);
+}
+
+void NodeBlocks::gather(const Band& band) {
+    Box bounds;
+    for (std::size_t n = band.walls; n < band.movable; ++n) bounds.add(band.start[n]);
+    std::vector<Keyed> sorted(band.movable);
+    parallelFor(band.movable, [&](std::size_t n) {
+        const std::size_t at = n < band.walls ? static_cast<std::size_t>(band.frontNode[n]) : n;
+        sorted[n] = {keyOf(band.start[at], band.h[at], bounds.lo), static_cast<std::int32_t>(n)};
+    });
+    tbb::parallel_sort(sorted);
+    blockOf_.resize(band.movable);
+    nodes_.resize(band.movable);
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+        if (i == 0 || sorted[i].key != sorted[i - 1].key) kindFrom_.push_back({i});
+        kindFrom_.back().back() = i + 1;
+        nodes_[i] = sorted[i].node;
+        blockOf_[static_cast<std::size_t>(nodes_[i])] = static_cast<std::uint32_t>(kindFrom_.size() - 1);
+    }
+}
+
+// By kind, then by colour: those of one share no corner.
+void NodeBlocks::order(const Band& band) {
+    std::vector<std::uint8_t> colourOf(band.movable, none);
+    const auto rank = [&](std::int32_t n) { return std::pair(kindOf(band, static_cast<std::size_t>(n)), colourOf[static_cast<std::size_t>(n)]); };
+    parallelFor(size(), [&](std::size_t b) {
+        const std::span<std::int32_t> nodes = all(b);
+        for (const std::int32_t n : nodes) {
+            std::uint64_t used = 0;
+            forNodesAround(band, static_cast<std::size_t>(n), [&](std::size_t m) {
+                if (blockOf_[m] == b && colourOf[m] != none) used |= std::uint64_t(1) << colourOf[m];
+            });
+            colourOf[static_cast<std::size_t>(n)] = static_cast<std::uint8_t>(std::min(63, std::countr_one(used)));
+        }
+        std::ranges::stable_sort(nodes, {}, rank);
+        for (const Kind kind : {front, core}) {
+            const auto at = std::ranges::lower_bound(nodes, kind, {}, [&](std::int32_t n) { return kindOf(band, static_cast<std::size_t>(n)); });
+            kindFrom_[b][kind] = kindFrom_[b].front() + static_cast<std::size_t>(at - nodes.begin());
+        }
+    }, 1);
+}
+
+// Greedy, in order.
+void NodeBlocks::colour(const Band& band) {
+    std::vector<std::vector<std::uint32_t>> beside(size());
+    parallelFor(size(), [&](std::size_t b) {
+        std::vector<std::uint32_t>& found = beside[b];
+        for (const std::int32_t n : all(b)) {
+            forNodesAround(band, static_cast<std::size_t>(n), [&](std::size_t m) {
+                const std::uint32_t other = blockOf_[m];
+                if (other != b && std::ranges::find(found, other) == found.end()) found.push_back(other);
+            });
+        }
+    }, 1);
+    std::vector<std::uint32_t> colourOf(size(), ~0u);
+    std::vector<std::uint8_t> taken;
+    for (std::size_t b = 0; b < size(); ++b) {
+        taken.assign(colours_.size() + 1, 0);
+        for (const std::uint32_t other : beside[b])
+            if (colourOf[other] != ~0u) taken[colourOf[other]] = 1;
+        const auto free = static_cast<std::size_t>(std::ranges::find(taken, 0) - taken.begin());
+        if (free == colours_.size()) colours_.emplace_back();
+        colourOf[b] = static_cast<std::uint32_t>(free);
+        colours_[free].push_back(static_cast<std::uint32_t>(b));
+    }
+}
+
+} // namespace i2b

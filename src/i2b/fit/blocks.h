@@ -1,0 +1,42 @@
+// The movable nodes of a band in blocks of neighbours: what a sweep of Gauss-Seidel works on. Nodes of a block are worked on one
+// after the other, in order, while their corners are in the cache; blocks of one colour share no corner and go at once.
+// Blocks and colours follow from the band alone, so a sweep ends the same on any number of threads.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace i2b {
+
+struct Band;
+
+class NodeBlocks {
+  public:
+    NodeBlocks() = default;
+    // Of a band whose rows of corners are there. Stays right when prisms are divided: a wall node is of the block of its front
+    // node, and the nodes of a face share corners from the start.
+    explicit NodeBlocks(const Band& band);
+
+    std::size_t size() const { return kindFrom_.size(); }
+    // Of a block, in the order in which they are worked on: no move runs on through the block from one to the next.
+    enum Kind : std::uint8_t { wall, front, core };
+    std::span<const std::int32_t> nodes(std::size_t block, Kind kind) const {
+        return {nodes_.data() + kindFrom_[block][kind], nodes_.data() + kindFrom_[block][kind + 1u]};
+    }
+    // Ascending numbers of blocks that share no corner.
+    const std::vector<std::vector<std::uint32_t>>& colours() const { return colours_; }
+
+  private:
+    void gather(const Band& band);
+    void order(const Band& band);
+    void colour(const Band& band);
+    std::span<std::int32_t> all(std::size_t block) { return {nodes_.data() + kindFrom_[block].front(), nodes_.data() + kindFrom_[block].back()}; }
+
+    std::vector<std::int32_t> nodes_;                     // block by block, kind by kind
+    std::vector<std::array<std::size_t, 4>> kindFrom_;    // per block: where each kind begins, and where the block ends
+    std::vector<std::uint32_t> blockOf_;                  // per node
+    std::vector<std::vector<std::uint32_t>> colours_;
+};
+
+} // namespace i2b
