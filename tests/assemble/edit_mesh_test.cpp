@@ -96,7 +96,7 @@ TEST(EditMesh, DividesAFace) {
         for (std::uint32_t from = 0; from < 4; ++from) {
             PolyMesh mesh = before;
             MeshEdits edits = nothing(mesh);
-            edits.fans = {{f, from}};
+            edits.divided = {{f, from}};
             editMesh(mesh, edits);
             ASSERT_EQ(mesh.validate(), "") << f;
             EXPECT_EQ(mesh.faces(), before.faces() + 1);
@@ -127,11 +127,11 @@ TEST(EditMesh, SameOnAnyNumberOfThreads) {
         if (a != b && !taken[a] && !taken[b] && random() % 6 == 0) {
             taken[a] = taken[b] = 1, edits.groups[b] = static_cast<std::int32_t>(a), ++merged;
         } else if (random() % 3 == 0) {
-            edits.fans.emplace_back(f, static_cast<std::uint32_t>(random() % 4));
+            edits.divided.emplace_back(f, static_cast<std::uint32_t>(random() % 4));
         }
     }
     ASSERT_GT(merged, 5);
-    for (const auto& [f, from] : edits.fans)
+    for (const auto& [f, from] : edits.divided)
         divided += f >= before.internalFaces() || edits.groups[Index(before.owner[Index(f)])] != edits.groups[Index(before.neighbour[Index(f)])];
     std::uint64_t sum = 0;
     for (const std::size_t threads : {1u, 2u, 3u}) {

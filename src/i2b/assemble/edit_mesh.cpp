@@ -56,14 +56,14 @@ class FaceOrder {
 };
 
 // What becomes of each face.
-class Fans {
+class Divisions {
   public:
-    Fans(const PolyMesh& mesh, const MeshEdits& edits) : mesh_(mesh), fans_(edits.fans), isFan_(Index(mesh.faces()), 0) {
-        for (const auto& [face, from] : fans_) isFan_[Index(face)] = 1;
+    Divisions(const PolyMesh& mesh, const MeshEdits& edits) : mesh_(mesh), divided_(edits.divided), isDivided_(Index(mesh.faces()), 0) {
+        for (const auto& [face, from] : divided_) isDivided_[Index(face)] = 1;
     }
-    const std::uint32_t* of(Index face) const {
-        if (!isFan_[face]) return nullptr; // nearly all
-        const auto at = std::lower_bound(fans_.begin(), fans_.end(), face, [](const auto& fan, Index f) { return Index(fan.first) < f; });
+    const std::uint32_t* of(Index face) const { // null: stays whole
+        if (!isDivided_[face]) return nullptr; // nearly all
+        const auto at = std::lower_bound(divided_.begin(), divided_.end(), face, [](const auto& one, Index f) { return Index(one.first) < f; });
         return &at->second;
     }
     std::uint32_t pieces(Index face) const { return of(face) ? size(face) - 2 : 1; }
@@ -72,8 +72,8 @@ class Fans {
   private:
     std::uint32_t size(Index face) const { return mesh_.faceOffsets[face + 1] - mesh_.faceOffsets[face]; }
     const PolyMesh& mesh_;
-    const std::vector<std::pair<std::int32_t, std::uint32_t>>& fans_;
-    std::vector<std::uint8_t> isFan_; // per face
+    const std::vector<std::pair<std::int32_t, std::uint32_t>>& divided_;
+    std::vector<std::uint8_t> isDivided_; // per face
 };
 
 // Where what comes of each face in the new order begins; one more at the end.
@@ -83,25 +83,27 @@ std::vector<std::uint32_t> scan(const FaceOrder& order, const auto& count) {
     return begin;
 }
 
-void rewriteVertices(PolyMesh& mesh, const FaceOrder& order, const Fans& fans, const std::vector<std::uint32_t>& firstPiece) {
-    const std::vector<std::uint32_t> first = scan(order, [&](Index f) { return fans.vertices(f); });
+void rewriteVertices(PolyMesh& mesh, const FaceOrder& order, const Divisions& divisions, const std::vector<std::uint32_t>& firstPiece) {
+    const std::vector<std::uint32_t> first = scan(order, [&](Index f) { return divisions.vertices(f); });
     RawVector<std::int32_t> vertices(first.back());
     RawVector<std::uint32_t> offsets(firstPiece.back() + 1);
     offsets.back() = first.back();
     parallelFor(order.size(), [&](Index i) {
         const auto v = mesh.face(static_cast<std::int32_t>(order.face(i)));
-        const std::uint32_t* const fan = fans.of(order.face(i));
+        const std::uint32_t* const division = divisions.of(order.face(i));
         std::uint32_t at = first[i];
-        if (!fan) {
+        if (!division) {
             offsets[firstPiece[i]] = at;
             std::copy(v.begin(), v.end(), vertices.begin() + at);
             if (order.isTurned(i)) std::reverse(vertices.begin() + at + 1, vertices.begin() + static_cast<std::ptrdiff_t>(at + v.size()));
             return;
         }
-        for (Index k = 1; k + 1 < v.size(); ++k, at += 3) {
-            offsets[firstPiece[i] + k - 1] = at;
-            vertices[at] = v[*fan], vertices[at + 1] = v[(*fan + k) % v.size()], vertices[at + 2] = v[(*fan + k + 1) % v.size()];
+        std::uint32_t piece = firstPiece[i];
+        for (const FaceTriangle& triangle : trianglesOf(mesh.points, v, *division)) {
+            offsets[piece++] = at;
+            for (Index k = 0; k < 3; ++k) vertices[at + k] = v[triangle[k]];
             if (order.isTurned(i)) std::swap(vertices[at + 1], vertices[at + 2]);
+            at += 3;
         }
     });
     mesh.faceVertices = std::move(vertices);
@@ -130,9 +132,9 @@ void rewriteSides(PolyMesh& mesh, const FaceOrder& order, const std::vector<std:
 
 void rewriteFaces(PolyMesh& mesh, const MeshEdits& edits, const std::vector<std::int32_t>& number) {
     const FaceOrder order(mesh, edits.groups);
-    const Fans fans(mesh, edits);
-    const std::vector<std::uint32_t> firstPiece = scan(order, [&](Index f) { return fans.pieces(f); });
-    rewriteVertices(mesh, order, fans, firstPiece);
+    const Divisions divisions(mesh, edits);
+    const std::vector<std::uint32_t> firstPiece = scan(order, [&](Index f) { return divisions.pieces(f); });
+    rewriteVertices(mesh, order, divisions, firstPiece);
     rewriteSides(mesh, order, number, firstPiece);
 }
 

@@ -162,7 +162,7 @@ std::optional<LocalEdits::Trial> Changer::uniteColumn(std::int32_t group) const 
     return {};
 }
 
-// Into a fan of triangles from each of its corners; a quadrangle has two diagonals.
+// Into the widest triangles, or a fan from each of its corners; a quadrangle has two diagonals.
 std::vector<LocalEdits::Trial> Changer::divisionsOf(std::int32_t face) const {
     const auto corners = static_cast<std::uint32_t>(mesh_.face(face).size());
     if (corners < 4 || edits_.isDivided(face)) return {};
@@ -170,6 +170,10 @@ std::vector<LocalEdits::Trial> Changer::divisionsOf(std::int32_t face) const {
     Trial trial = still(own, other < 0 ? own : other);
     trial.face = face;
     std::vector<Trial> trials;
+    if (corners > 4) {
+        trials.push_back(trial);
+        trials.back().from = widest;
+    }
     for (; trial.from < (corners == 4 ? 2 : corners); ++trial.from) trials.push_back(trial);
     return trials;
 }

@@ -39,7 +39,7 @@ std::vector<std::int32_t> make(const std::vector<std::optional<Trial>>& changes,
 // Per face that dividing adds to walls, the cell there; ascending.
 std::vector<std::int32_t> piecesOfWalls(const PolyMesh& mesh, const MeshEdits& edits) {
     std::vector<std::int32_t> cells;
-    for (const auto& [face, from] : edits.fans) {
+    for (const auto& [face, from] : edits.divided) {
         for (const Patch& patch : mesh.patches)
             if (patch.type == "wall" && face >= patch.start && face < patch.start + patch.count)
                 cells.insert(cells.end(), mesh.face(face).size() - 3, mesh.owner[Index(face)]);

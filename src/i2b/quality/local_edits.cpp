@@ -25,13 +25,12 @@ class MeshBuilder {
         for (const std::int32_t p : points) mesh_.points.push_back(from.points[Index(p)]);
         mesh_.faceOffsets.push_back(0);
     }
-    // Out of owner into neighbour, one of which may be -1. from: where it becomes a fan.
+    // Out of owner into neighbour, one of which may be -1. from: where it is divided.
     void add(std::int32_t face, std::int32_t owner, std::int32_t neighbour, const std::uint32_t* from) {
         const auto v = from_.face(face);
         const bool turned = neighbour < 0 ? false : owner < 0 || owner > neighbour;
         if (!from) return addLoop({v.begin(), v.end()}, owner, neighbour, turned);
-        for (Index k = 1; k + 1 < v.size(); ++k)
-            addLoop({v[*from], v[(*from + k) % v.size()], v[(*from + k + 1) % v.size()]}, owner, neighbour, turned);
+        for (const auto& [a, b, c] : trianglesOf(from_.points, v, *from)) addLoop({v[a], v[b], v[c]}, owner, neighbour, turned);
     }
     PolyMesh take() {
         mesh_.patches = {{"rest", "patch", mesh_.internalFaces(), mesh_.faces() - mesh_.internalFaces()}};
@@ -150,8 +149,8 @@ PolyMesh LocalEdits::around(const Trial& trial) const {
     MeshBuilder mesh(mesh_, points, static_cast<std::int32_t>(cells.size()));
     for (const auto& sides : {inner, outer}) {
         for (const Sides& s : sides) {
-            const auto fan = fans_.find(s.face);
-            mesh.add(s.face, s.owner, s.neighbour, s.face == trial.face ? &trial.from : fan != fans_.end() ? &fan->second : nullptr);
+            const auto at = divided_.find(s.face);
+            mesh.add(s.face, s.owner, s.neighbour, s.face == trial.face ? &trial.from : at != divided_.end() ? &at->second : nullptr);
         }
     }
     return mesh.take();

@@ -20,11 +20,11 @@ class LocalEdits {
     std::int32_t of(std::int32_t cell) const { return group_[static_cast<std::size_t>(cell)]; }
     std::span<const std::int32_t> cells(std::int32_t group) const;
     void unite(std::int32_t a, std::int32_t b); // groups
-    void divide(std::int32_t face, std::uint32_t from) { fans_[face] = from; } // into a fan of triangles from one of its vertices
-    bool isDivided(std::int32_t face) const { return fans_.contains(face); }
-    MeshEdits edits() const { return {group_, {fans_.begin(), fans_.end()}}; }
+    void divide(std::int32_t face, std::uint32_t from) { divided_[face] = from; } // as trianglesOf() does
+    bool isDivided(std::int32_t face) const { return divided_.contains(face); }
+    MeshEdits edits() const { return {group_, {divided_.begin(), divided_.end()}}; }
     std::int64_t united() const { return united_; }
-    std::int64_t divided() const { return static_cast<std::int64_t>(fans_.size()); }
+    std::int64_t divided() const { return static_cast<std::int64_t>(divided_.size()); }
 
     // Faces of a group to others and out of the domain.
     void facesOf(std::int32_t group, std::vector<std::int32_t>& faces) const;
@@ -40,7 +40,7 @@ class LocalEdits {
         std::vector<std::int32_t> groups; // ascending
         bool united = false;       // as one cell
         std::int32_t face = -1;    // divided
-        std::uint32_t from = 0;    // one of its vertices
+        std::uint32_t from = 0;    // one of its vertices, or widest
     };
     PolyMesh around(const Trial& trial) const;
 
@@ -52,7 +52,7 @@ class LocalEdits {
     const Rows& cellFaces_;
     std::vector<std::int32_t> group_;                                        // per cell
     std::unordered_map<std::int32_t, std::vector<std::int32_t>> members_;    // of groups of more than one
-    std::map<std::int32_t, std::uint32_t> fans_;
+    std::map<std::int32_t, std::uint32_t> divided_;
     std::int64_t united_ = 0;
 };
 
