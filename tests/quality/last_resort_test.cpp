@@ -1,7 +1,8 @@
 // Proves: where faces are beyond the limits, dividing and uniting leaves a valid mesh with fewer of them, nothing worse and the
-// same points; those that nothing would help are told without a change; a mesh without any stays as it is; layers of asked heights are united
+// same points; those that nothing would help are told without a change; two changes help where none does alone; a mesh without any stays as it is; layers of asked heights are united
 // within their column only; the same on any number of threads.
 #include "i2b/quality/last_resort.h"
+#include "i2b/quality/changer.h"
 #include "i2b/quality/mesh_faults.h"
 #include "i2b/quality/quality_report.h"
 #include "quality/shaken_block.h"
@@ -66,6 +67,29 @@ TEST_P(ShakenBlocks, FacesBeyondHelpAreThoseThatStayPoor) {
     none.nonOrthogonality = 180, none.pyramidVolume = none.tetQuality = -1e30, none.concavity = 180, none.internalSkewness = none.boundarySkewness = -1;
     none.faceWeight = none.volumeRatio = none.twist = none.determinant = -1;
     EXPECT_TRUE(facesBeyondHelp(mesh, cellFaces, poor, none).empty());
+}
+
+// A pair is found only for a face that no change helps alone, and leaves fewer faces beyond the limits in the whole mesh, nothing worse.
+TEST(LastResort, PairsHelpWhereNoChangeHelpsAlone) {
+    int found = 0;
+    for (unsigned seed = 1; seed < 5; ++seed) {
+        const PolyMesh before = shaken(seed, 0.45);
+        const Verdict old = judge(before, {});
+        const Rows cellFaces = buildCellFaces(before);
+        for (const std::int32_t face : poorFaces(before)) {
+            LocalEdits edits(before, cellFaces);
+            if (Changer(before, edits, {}, before.cells).find(face)) continue;
+            const auto pair = findPair(before, face, {}, before.cells, edits);
+            if (!pair) continue;
+            ++found;
+            for (const LocalEdits::Trial& change : *pair) apply(change, edits);
+            PolyMesh mesh = before;
+            editMesh(mesh, edits.edits());
+            ASSERT_EQ(mesh.validate(), "");
+            EXPECT_TRUE(isBetter(judge(mesh, {}), old)) << "seed " << seed << " face " << face;
+        }
+    }
+    EXPECT_GT(found, 3);
 }
 
 TEST(LastResort, LeavesGoodMeshesAlone) {
