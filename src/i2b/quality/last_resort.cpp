@@ -25,8 +25,9 @@ std::vector<std::int32_t> make(const std::vector<std::optional<Trial>>& changes,
     for (Index i = 0; i < changes.size(); ++i) {
         const std::optional<Trial>& change = changes[i];
         if (!change) continue;
+        // All that it was judged by is as it was where none of its groups is beside one that has changed.
+        if (std::ranges::any_of(change->groups, [&](std::int32_t g) { return std::ranges::binary_search(touched, g); })) continue;
         const std::vector<std::int32_t> around = edits.neighboursOf(change->groups);
-        if (std::ranges::any_of(around, [&](std::int32_t g) { return std::ranges::binary_search(touched, g); })) continue;
         apply(*change, edits);
         made[i] = 1;
         const auto middle = static_cast<std::ptrdiff_t>(touched.size());
