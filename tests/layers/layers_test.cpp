@@ -98,6 +98,15 @@ TEST(Layers, GrowByTheRatio) {
 }
 
 // Given heights are met to the last digit, and a cell over them takes the rest.
+// Few that share the room are held to the quality of other cells, but not many, nor those of a height that was asked for.
+TEST(Layers, AreThinWhereManyOrOfAskedHeight) {
+    const Sample s;
+    EXPECT_FALSE(makeLayers(s.front, options(5, 1.2)).areThin());
+    EXPECT_FALSE(makeLayers(s.front, options(12, 1)).areThin());
+    EXPECT_TRUE(makeLayers(s.front, options(12, 1.2)).areThin());
+    EXPECT_TRUE(makeLayers(s.front, options(2, 1.2, 0.2 * s.leastRoom())).areThin());
+}
+
 TEST(Layers, HeightsAreMetWhereThereIsRoom) {
     const Sample s;
     const double first = s.leastRoom() / 20; // 5 layers are 7.44 times as high, and half of the last one is 1.04

@@ -9,7 +9,7 @@ namespace i2b {
 LaidLayers layOn(Front& front, const WallPlans& plans, const SurfaceIndex& index) {
     LaidLayers laid{makeLayers(front, plans), {}};
     LayerStack& stack = laid.stack;
-    if (!stack.asHighAsCan()) {
+    if (stack.areThin()) {
         laid.movedWalls = steepenAtSides(front);
         stack = makeLayers(front, plans);
     }

@@ -48,7 +48,8 @@ struct LayerStack {
     bool uniform() const { return cellOffsets.empty(); }
     int cellsOf(std::size_t face) const { return uniform() ? count : static_cast<int>(cellOffsets[face + 1] - cellOffsets[face]); }
     int pointsOf(std::size_t vertex) const { return uniform() ? count : static_cast<int>(pointOffsets[vertex + 1] - pointOffsets[vertex]); }
-    bool asHighAsCan() const { return uniform() && plans.front().fills(); } // the same cells everywhere share all the room
+    // Are there cells that are to be thin? Not where few share all the room, the same everywhere: these are to be as good as others.
+    bool areThin() const;
     // Where the cells of a face and the points of a vertex begin among those of all.
     std::size_t cellOffset(std::size_t face) const { return uniform() ? face * static_cast<std::size_t>(count) : cellOffsets[face]; }
     std::size_t pointOffset(std::size_t vertex) const { return uniform() ? vertex * static_cast<std::size_t>(count) : pointOffsets[vertex]; }

@@ -10,6 +10,8 @@
 namespace i2b {
 namespace {
 
+constexpr double thinShare = 0.05; // of the room, that the lowest of thin layers is under
+
 FrontMesh::FaceHandle faceAt(std::size_t f) { return FrontMesh::FaceHandle(static_cast<int>(f)); }
 FrontMesh::VertexHandle vertexAt(std::size_t v) { return FrontMesh::VertexHandle(static_cast<int>(v)); }
 
@@ -138,6 +140,10 @@ LayerStack makeLayers(const Front& front, const LayerOptions& options) {
     WallPlans plans;
     plans.plans.push_back(planOf(requestOf(options), options.unit));
     return makeLayers(front, plans);
+}
+
+bool LayerStack::areThin() const {
+    return !uniform() || !plans.front().fills() || askedFirst(plans.front(), 1, 1) < thinShare;
 }
 
 std::size_t LayerStack::vertexOfPoint(std::size_t point) const {

@@ -85,8 +85,8 @@ class Cutter {
             cell[static_cast<Index>(k)] = thinCell(level(k), level(k + 1));
             if (!(cell[static_cast<Index>(k)].centreShare > leastShare)) return false;
         }
-        // Nodes of layers that fill the room are moved until their faces divide; those of thin layers cannot be.
-        for (int k = 0; k < cells && !stack_.asHighAsCan(); ++k) {
+        // Nodes of few layers that fill the room are moved until their faces divide; those of thin layers cannot be.
+        for (int k = 0; k < cells && stack_.areThin(); ++k) {
             if (!divides(level(k), k > 0 ? &cell[static_cast<Index>(k - 1)] : nullptr, k + 1 < cells ? &cell[static_cast<Index>(k)] : nullptr)) return false;
         }
         return true;

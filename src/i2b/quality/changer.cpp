@@ -55,9 +55,19 @@ void apply(const LocalEdits::Trial& change, LocalEdits& edits) {
     for (Index k = 1; k < change.groups.size(); ++k) edits.unite(change.groups.front(), change.groups[k]);
 }
 
-// What helps a face with the least change: dividing it, uniting its own two cells, else one of them with the neighbour
-// across its largest face.
 std::optional<LocalEdits::Trial> Changer::find(std::int32_t face) const {
+    if (const auto small = findSmall(face)) return small;
+    const std::int32_t own = edits_.of(mesh_.owner[Index(face)]), other = edits_.across(face, own);
+    if (own == other || (own < thinFrom_ && other < thinFrom_)) return {};
+    if (judge(edits_.around(still(own, other < 0 ? own : other)), limits_).faces == 0) return {};
+    for (const std::int32_t group : {own, other}) {
+        if (group < thinFrom_) continue;
+        if (const auto united = uniteColumn(group)) return united;
+    }
+    return {};
+}
+
+std::optional<LocalEdits::Trial> Changer::findSmall(std::int32_t face) const {
     const std::int32_t own = edits_.of(mesh_.owner[Index(face)]), other = edits_.across(face, own);
     if (own == other) return {};
     const Verdict now = judge(edits_.around(still(own, other < 0 ? own : other)), limits_);
@@ -71,10 +81,6 @@ std::optional<LocalEdits::Trial> Changer::find(std::int32_t face) const {
             if (next == own || next == other) continue;
             if (const auto united = unite(group, next)) return united;
         }
-    }
-    for (const std::int32_t group : {own, other}) {
-        if (group < thinFrom_) continue;
-        if (const auto united = uniteColumn(group)) return united;
     }
     return {};
 }
@@ -237,7 +243,7 @@ std::optional<std::array<LocalEdits::Trial, 2>> findPair(const PolyMesh& mesh, s
         for (const std::int32_t g : firsts[i].groups) then.facesOf(then.of(g), faces);
         sortUnique(faces);
         for (const std::int32_t f : faces) {
-            const std::optional<LocalEdits::Trial> second = changer.find(f);
+            const std::optional<LocalEdits::Trial> second = changer.findSmall(f);
             if (!second || !areBetter(edits, then, firsts[i], *second, limits)) continue;
             seconds[i] = second;
             return;

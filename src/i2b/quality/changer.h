@@ -30,8 +30,10 @@ class Changer {
         : mesh_(mesh), edits_(edits), limits_(limits), thinFrom_(thinFrom) {}
 
     // What helps a face with the least change: dividing it, uniting its own two cells, else one of them with the neighbour
-    // across its largest face.
+    // across its largest face; at last several layers of a column at once.
     std::optional<Trial> find(std::int32_t face) const;
+    // Without the last, which takes many trials.
+    std::optional<Trial> findSmall(std::int32_t face) const;
     // All that may be done to a face's two cells and their faces, whether it helps or not.
     std::vector<Trial> all(std::int32_t face) const;
 

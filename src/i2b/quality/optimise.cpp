@@ -19,7 +19,7 @@ constexpr double stalled = 0.9;       // this share is left by a sweep are given
 } // namespace
 
 Optimiser::Optimiser(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults, Front& front, LayerStack& layers, const WallGuide& guide)
-    : mesh_(mesh), cellFaces_(cellFaces), faults_(faults), front_(front), stack_(layers), thin_(!layers.asHighAsCan()), layers_(thin_ ? layers.count : 1), guide_(guide), nodes_(front, layers) {}
+    : mesh_(mesh), cellFaces_(cellFaces), faults_(faults), front_(front), stack_(layers), thin_(layers.areThin()), layers_(thin_ ? layers.count : 1), guide_(guide), nodes_(front, layers) {}
 
 // Those of a face, each with a cell that uses it.
 void Optimiser::addNodes(std::int32_t face, std::int32_t cell, std::vector<std::pair<MeshNode, std::int32_t>>& found) const {

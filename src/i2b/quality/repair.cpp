@@ -47,7 +47,7 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, L
     RepairSummary summary;
     const Rows cellFaces = buildCellFaces(mesh);
     // Layers of a height that was asked for are thin on purpose: nodes off the wall would not mend them.
-    const bool thin = !layers.asHighAsCan();
+    const bool thin = layers.areThin();
     const std::int32_t thinFrom = !thin ? mesh.cells : mesh.cells - static_cast<std::int32_t>(layers.cells());
     MeshFaults faults(mesh, cellFaces, strictLimits(limits), thinFrom);
     FaultCount poor;
