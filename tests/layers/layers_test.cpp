@@ -98,13 +98,17 @@ TEST(Layers, GrowByTheRatio) {
 }
 
 // Given heights are met to the last digit, and a cell over them takes the rest.
-// Few that share the room are held to the quality of other cells, but not many, nor those of a height that was asked for.
-TEST(Layers, AreThinWhereManyOrOfAskedHeight) {
+// Few that share the room are neither, many are both, and so are those of a height that was asked for.
+TEST(Layers, AreThinAndFlatWhereManyOrOfAskedHeight) {
     const Sample s;
-    EXPECT_FALSE(makeLayers(s.front, options(5, 1.2)).areThin());
-    EXPECT_FALSE(makeLayers(s.front, options(12, 1)).areThin());
-    EXPECT_TRUE(makeLayers(s.front, options(12, 1.2)).areThin());
-    EXPECT_TRUE(makeLayers(s.front, options(2, 1.2, 0.2 * s.leastRoom())).areThin());
+    struct Row { LayerOptions asked; bool thin, flat; };
+    const Row rows[] = {{options(1, 1.2), false, false}, {options(2, 1.2), false, false},  {options(5, 1.2), true, false}, {options(9, 1), true, false},
+                        {options(12, 1.2), true, true},  {options(12, 1), true, true}, {options(2, 1.2, 0.2 * s.leastRoom()), true, true}};
+    for (const Row& row : rows) {
+        const LayerStack stack = makeLayers(s.front, row.asked);
+        EXPECT_EQ(stack.areThin(), row.thin) << row.asked.count;
+        EXPECT_EQ(stack.areFlat(), row.flat) << row.asked.count;
+    }
 }
 
 TEST(Layers, HeightsAreMetWhereThereIsRoom) {

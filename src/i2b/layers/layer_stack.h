@@ -48,8 +48,10 @@ struct LayerStack {
     bool uniform() const { return cellOffsets.empty(); }
     int cellsOf(std::size_t face) const { return uniform() ? count : static_cast<int>(cellOffsets[face + 1] - cellOffsets[face]); }
     int pointsOf(std::size_t vertex) const { return uniform() ? count : static_cast<int>(pointOffsets[vertex + 1] - pointOffsets[vertex]); }
-    // Are there cells that are to be thin? Not where few share all the room, the same everywhere: these are to be as good as others.
+    // Are there cells that are to be thin? Not where few share all the room, the same everywhere.
     bool areThin() const;
+    // Even so thin that small determinants and weights are to be? Else they are to be as good as other cells.
+    bool areFlat() const;
     // Where the cells of a face and the points of a vertex begin among those of all.
     std::size_t cellOffset(std::size_t face) const { return uniform() ? face * static_cast<std::size_t>(count) : cellOffsets[face]; }
     std::size_t pointOffset(std::size_t vertex) const { return uniform() ? vertex * static_cast<std::size_t>(count) : pointOffsets[vertex]; }
@@ -67,6 +69,9 @@ struct LayerStack {
     // "" or the first fault: sizes, a vertex without the points that the faces around it need, neighbours that differ by
     // more than a cell, points that do not fall to the wall.
     std::string validate(const Front& front) const;
+
+  private:
+    double leastShare() const; // of the room, that the lowest cells take where they fill it; else 0
 };
 
 // With straight columns: see bendColumns().

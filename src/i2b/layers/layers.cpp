@@ -10,7 +10,7 @@
 namespace i2b {
 namespace {
 
-constexpr double thinShare = 0.05; // of the room, that the lowest of thin layers is under
+constexpr double thinShare = 0.3, flatShare = 0.11; // of the room, that the lowest of thin and of flat layers is under
 
 FrontMesh::FaceHandle faceAt(std::size_t f) { return FrontMesh::FaceHandle(static_cast<int>(f)); }
 FrontMesh::VertexHandle vertexAt(std::size_t v) { return FrontMesh::VertexHandle(static_cast<int>(v)); }
@@ -142,8 +142,12 @@ LayerStack makeLayers(const Front& front, const LayerOptions& options) {
     return makeLayers(front, plans);
 }
 
-bool LayerStack::areThin() const {
-    return !uniform() || !plans.front().fills() || askedFirst(plans.front(), 1, 1) < thinShare;
+bool LayerStack::areThin() const { return leastShare() < thinShare; }
+bool LayerStack::areFlat() const { return leastShare() < flatShare; }
+
+double LayerStack::leastShare() const {
+    const bool fill = uniform() && plans.front().fills();
+    return fill ? askedFirst(plans.front(), 1, 1) : 0;
 }
 
 std::size_t LayerStack::vertexOfPoint(std::size_t point) const {

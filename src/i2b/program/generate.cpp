@@ -128,7 +128,7 @@ MeshResult generate(const Options& options, Context& context) {
     const WallPlans plans = plansOf(options.layers, c.surface.parts);
     notes.insert(notes.end(), plans.notes.begin(), plans.notes.end());
     Walls walls = makeWalls({c, *lattice, features, plans, options.fit, options.quality}, out.mesh, context);
-    const std::int32_t thinFrom = walls.laid.stack.areThin() ? static_cast<std::int32_t>(lattice->cellCount()) : out.mesh.cells;
+    const std::int32_t thinFrom = walls.laid.stack.areFlat() ? static_cast<std::int32_t>(lattice->cellCount()) : out.mesh.cells;
     const LastResort changed = stage(
         context, "last resort", [&] { return changePoorPlaces(out.mesh, walls.repaired.unmended, options.quality, thinFrom); },
         [](const LastResort& l) { return l.changes.merged + l.changes.divided; });

@@ -46,9 +46,9 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, L
                      const WallGuide& guide, const DictionaryLimits& limits, bool mayThinLeave) {
     RepairSummary summary;
     const Rows cellFaces = buildCellFaces(mesh);
-    // Layers of a height that was asked for are thin on purpose: nodes off the wall would not mend them.
+    // Nodes off the wall do not mend thin layers: it takes whole columns.
     const bool thin = layers.areThin();
-    const std::int32_t thinFrom = !thin ? mesh.cells : mesh.cells - static_cast<std::int32_t>(layers.cells());
+    const std::int32_t thinFrom = !layers.areFlat() ? mesh.cells : mesh.cells - static_cast<std::int32_t>(layers.cells());
     MeshFaults faults(mesh, cellFaces, strictLimits(limits), thinFrom);
     FaultCount poor;
     faults.poorCells(poor);
