@@ -74,7 +74,7 @@ TEST(LastResort, PairsHelpWhereNoChangeHelpsAlone) {
     int found = 0;
     for (unsigned seed = 1; seed < 5; ++seed) {
         const PolyMesh before = shaken(seed, 0.45);
-        const Verdict old = judge(before, {});
+        const Verdict old = judge({before, {}, {}}, {});
         const Rows cellFaces = buildCellFaces(before);
         for (const std::int32_t face : poorFaces(before)) {
             LocalEdits edits(before, cellFaces);
@@ -86,7 +86,7 @@ TEST(LastResort, PairsHelpWhereNoChangeHelpsAlone) {
             PolyMesh mesh = before;
             editMesh(mesh, edits.edits());
             ASSERT_EQ(mesh.validate(), "");
-            EXPECT_TRUE(isBetter(judge(mesh, {}), old)) << "seed " << seed << " face " << face;
+            EXPECT_TRUE(isBetter(judge({mesh, {}, {}}, {}), old)) << "seed " << seed << " face " << face;
         }
     }
     EXPECT_GT(found, 3);

@@ -20,23 +20,39 @@ void sortUnique(std::vector<std::int32_t>& v) {
 
 } // namespace
 
-Verdict judge(const PolyMesh& mesh, const DictionaryLimits& dictionary) {
+Verdict judge(const LocalEdits::Surroundings& around, const DictionaryLimits& dictionary) {
     const QualityLimits limits;
-    Measurement m{mesh, limits, dictionary, {}, {}, {}, {}, {}, {}, {}};
+    const PolyMesh& mesh = around.mesh;
+    Measurement m{mesh, limits, dictionary, {}, {}, {}, {}, {}, {}, {}, around.outerCells, around.outerFaces};
     for (const Vec3& p : mesh.points) m.report.box.add(p);
     m.cellFaces = buildCellFaces(mesh);
     measureCells(m);
     measureFaces(m);
-    measureFaceFaces(m, buildPointFaces(mesh));
     const QualityReport& r = m.report;
     Verdict v;
     Index n = 0;
     for (const DictionaryCheck& check : r.dictionary) v.counts[n++] = check.faces;
     for (const std::int64_t count : {r.negativeVolumeCells, r.openCells, r.wrongOrientedFaces, r.highlySkewFaces, r.smallDeterminantCells,
-                                     r.lowWeightFaces, r.lowVolumeRatioFaces, r.highAspectRatioCells, r.tetErrors, r.duplicateFaces})
+                                     r.lowWeightFaces, r.lowVolumeRatioFaces, r.highAspectRatioCells, r.tetErrors})
         v.counts[n++] = count;
     v.faces = r.dictionaryFaces, v.concave = r.concaveCells;
     return v;
+}
+
+bool anyBeyond(LocalEdits::Surroundings around, const DictionaryLimits& dictionary) {
+    around.outerCells.clear(), around.outerFaces.clear();
+    return judge(around, dictionary).faces > 0;
+}
+
+bool hasNoMoreTwice(const PolyMesh& now, const PolyMesh& before) {
+    const auto count = [](const PolyMesh& mesh) {
+        const QualityLimits limits;
+        const DictionaryLimits dictionary;
+        Measurement m{mesh, limits, dictionary, {}, {}, {}, {}, {}, {}, {}};
+        measureFaceFaces(m, buildPointFaces(mesh));
+        return m.report.duplicateFaces;
+    };
+    return count(now) <= count(before);
 }
 
 bool isBetter(const Verdict& now, const Verdict& before) {
@@ -59,7 +75,7 @@ std::optional<LocalEdits::Trial> Changer::find(std::int32_t face) const {
     if (const auto small = findSmall(face)) return small;
     const std::int32_t own = edits_.of(mesh_.owner[Index(face)]), other = edits_.across(face, own);
     if (own == other || (own < thinFrom_ && other < thinFrom_)) return {};
-    if (judge(edits_.around(still(own, other < 0 ? own : other)), limits_).faces == 0) return {};
+    if (!anyBeyond(edits_.around(still(own, other < 0 ? own : other)), limits_)) return {};
     for (const std::int32_t group : {own, other}) {
         if (group < thinFrom_) continue;
         if (const auto united = uniteColumn(group)) return united;
@@ -70,9 +86,11 @@ std::optional<LocalEdits::Trial> Changer::find(std::int32_t face) const {
 std::optional<LocalEdits::Trial> Changer::findSmall(std::int32_t face) const {
     const std::int32_t own = edits_.of(mesh_.owner[Index(face)]), other = edits_.across(face, own);
     if (own == other) return {};
-    const Verdict now = judge(edits_.around(still(own, other < 0 ? own : other)), limits_);
-    if (now.faces == 0) return {};
-    if (const auto divided = divide(face, now)) return divided;
+    const LocalEdits::Surroundings around = edits_.around(still(own, other < 0 ? own : other));
+    const Verdict now = judge(around, limits_);
+    if (now.faces == 0 && !anyBeyond(around, limits_)) return {};
+    if (now.faces > 0)
+        if (const auto divided = divide(face, around.mesh, now)) return divided;
     if (other >= 0)
         if (const auto united = unite(own, other)) return united;
     for (const std::int32_t group : {own, other}) {
@@ -129,8 +147,11 @@ std::optional<LocalEdits::Trial> Changer::unite(std::int32_t a, std::int32_t b) 
 std::optional<LocalEdits::Trial> Changer::uniteAll(std::vector<std::int32_t> groups) const {
     std::sort(groups.begin(), groups.end());
     const Trial trial{std::move(groups), true};
-    const Verdict before = judge(edits_.around({trial.groups}), limits_);
-    if (before.faces > 0 && isBetter(judge(edits_.around(trial), limits_), before)) return trial;
+    const LocalEdits::Surroundings was = edits_.around({trial.groups});
+    const Verdict before = judge(was, limits_);
+    if (before.faces == 0) return {};
+    const LocalEdits::Surroundings now = edits_.around(trial);
+    if (isBetter(judge(now, limits_), before) && hasNoMoreTwice(now.mesh, was.mesh)) return trial;
     return {};
 }
 
@@ -184,12 +205,13 @@ std::vector<LocalEdits::Trial> Changer::divisionsOf(std::int32_t face) const {
     return trials;
 }
 
-std::optional<LocalEdits::Trial> Changer::divide(std::int32_t face, const Verdict& now) const {
-    Verdict least = now;
+std::optional<LocalEdits::Trial> Changer::divide(std::int32_t face, const PolyMesh& whole, const Verdict& before) const {
+    Verdict least = before;
     std::optional<Trial> best;
     for (const Trial& trial : divisionsOf(face)) {
-        const Verdict v = judge(edits_.around(trial), limits_);
-        if (isBetter(v, least)) least = v, best = trial;
+        const LocalEdits::Surroundings now = edits_.around(trial);
+        const Verdict v = judge(now, limits_);
+        if (isBetter(v, least) && hasNoMoreTwice(now.mesh, whole)) least = v, best = trial;
     }
     return best;
 }
@@ -225,7 +247,8 @@ bool areBetter(const LocalEdits& before, const LocalEdits& then, const LocalEdit
     apply(second, both);
     for (const std::int32_t g : groups) after.push_back(both.of(g));
     sortUnique(after);
-    return isBetter(judge(both.around({after}), limits), judge(before.around({groups}), limits));
+    const LocalEdits::Surroundings now = both.around({after}), was = before.around({groups});
+    return isBetter(judge(now, limits), judge(was, limits)) && hasNoMoreTwice(now.mesh, was.mesh);
 }
 
 } // namespace

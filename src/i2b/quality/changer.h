@@ -9,13 +9,17 @@
 namespace i2b {
 
 struct Verdict {
-    std::array<std::int64_t, dictionaryLimitCount + 10> counts{}; // of everything that a check names
+    std::array<std::int64_t, dictionaryLimitCount + 9> counts{}; // of all that a check names, but for faces twice there
     std::int64_t faces = 0, concave = 0;                          // faces beyond limits, cells
 };
 
-Verdict judge(const PolyMesh& mesh, const DictionaryLimits& dictionary);
+// Of the groups in question and their faces: what lies around them stays as it is.
+Verdict judge(const LocalEdits::Surroundings& around, const DictionaryLimits& dictionary);
+// With all that lies around them: is any face beyond a limit?
+bool anyBeyond(LocalEdits::Surroundings around, const DictionaryLimits& dictionary);
 // Fewer faces beyond limits, and nothing else worse?
 bool isBetter(const Verdict& now, const Verdict& before);
+bool hasNoMoreTwice(const PolyMesh& now, const PolyMesh& before); // faces: asked where all else is better, for it takes as long
 
 // Two groups, or one, as they are.
 LocalEdits::Trial still(std::int32_t a, std::int32_t b);
@@ -46,7 +50,7 @@ class Changer {
     std::vector<std::int32_t> columnOf(std::int32_t group) const;
     std::optional<Trial> uniteColumn(std::int32_t group) const;
     std::vector<Trial> divisionsOf(std::int32_t face) const;
-    std::optional<Trial> divide(std::int32_t face, const Verdict& now) const;
+    std::optional<Trial> divide(std::int32_t face, const PolyMesh& whole, const Verdict& before) const;
 
     const PolyMesh& mesh_;
     const LocalEdits& edits_;

@@ -79,7 +79,7 @@ std::vector<std::int32_t> facesLeft(const PolyMesh& mesh, const std::vector<std:
         const std::int32_t face = poorFaces[i], own = edits.of(mesh.owner[Index(face)]);
         const std::int32_t across = edits.across(face, own), other = across < 0 ? own : across;
         const bool isGone = across == own; // inside a merged cell
-        left[i] = !isGone && judge(edits.around(still(own, other)), limits).faces > 0;
+        left[i] = !isGone && anyBeyond(edits.around(still(own, other)), limits);
     }, 1);
     std::vector<std::int32_t> faces;
     for (Index i = 0; i < left.size(); ++i)

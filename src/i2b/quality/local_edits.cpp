@@ -32,6 +32,7 @@ class MeshBuilder {
         if (!from) return addLoop({v.begin(), v.end()}, owner, neighbour, turned);
         for (const auto& [a, b, c] : trianglesOf(from_.points, v, *from)) addLoop({v[a], v[b], v[c]}, owner, neighbour, turned);
     }
+    Index faces() const { return mesh_.owner.size(); }
     PolyMesh take() {
         mesh_.patches = {{"rest", "patch", mesh_.internalFaces(), mesh_.faces() - mesh_.internalFaces()}};
         return std::move(mesh_);
@@ -126,7 +127,7 @@ std::vector<std::int32_t> LocalEdits::neighboursOf(const std::vector<std::int32_
     return all;
 }
 
-PolyMesh LocalEdits::around(const Trial& trial) const {
+LocalEdits::Surroundings LocalEdits::around(const Trial& trial) const {
     std::vector<std::int32_t> cells = neighboursOf(trial.groups), faces, points;
     for (const std::int32_t group : cells) facesOf(group, faces);
     sortUnique(faces);
@@ -146,14 +147,19 @@ PolyMesh LocalEdits::around(const Trial& trial) const {
         points.insert(points.end(), v.begin(), v.end());
     }
     sortUnique(points);
+    Surroundings result;
+    for (const std::int32_t group : cells) result.outerCells.push_back(!std::ranges::binary_search(trial.groups, group));
     MeshBuilder mesh(mesh_, points, static_cast<std::int32_t>(cells.size()));
+    const auto isOuter = [&](std::int32_t cell) { return cell < 0 || result.outerCells[Index(cell)] != 0; };
     for (const auto& sides : {inner, outer}) {
         for (const Sides& s : sides) {
             const auto at = divided_.find(s.face);
             mesh.add(s.face, s.owner, s.neighbour, s.face == trial.face ? &trial.from : at != divided_.end() ? &at->second : nullptr);
+            result.outerFaces.resize(mesh.faces(), isOuter(s.owner) && isOuter(s.neighbour));
         }
     }
-    return mesh.take();
+    result.mesh = mesh.take();
+    return result;
 }
 
 } // namespace i2b

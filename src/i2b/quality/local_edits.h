@@ -42,7 +42,11 @@ class LocalEdits {
         std::int32_t face = -1;    // divided
         std::uint32_t from = 0;    // one of its vertices, or widest
     };
-    PolyMesh around(const Trial& trial) const;
+    struct Surroundings {
+        PolyMesh mesh;
+        std::vector<std::uint8_t> outerCells, outerFaces; // 1: of neighbours only
+    };
+    Surroundings around(const Trial& trial) const;
 
   private:
     std::size_t sharedPoints(std::int32_t a, std::int32_t b) const;

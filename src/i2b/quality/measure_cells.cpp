@@ -149,6 +149,10 @@ class CellStretch {
         for (Index c = begin; c < end; ++c) {
             const auto cell = static_cast<std::int32_t>(c);
             const std::span<const std::int32_t> faces = m_.cellFaces[cell];
+            if (!m_.outerCells.empty() && m_.outerCells[c] != 0) {
+                m_.moments[c] = measureCell(m_.mesh, faces, faceShapes_.of(faces), cell);
+                continue;
+            }
             const bool hex = hexes_.isHex(faces);
             addressing_.measure(cell, faces, hex, part);
             if (hex && directions_.count == 3) hexes_.add(cell, clear, odd);

@@ -136,8 +136,11 @@ class FaceStretch {
             values[f - begin] = {batch.ortho[lane], batch.weight[lane], batch.ratio[lane]};
             ++part.alone.flatnessFaces;
         };
-        for (Index f = begin; f < end; ++f)
+        for (Index f = begin; f < end; ++f) {
+            flat[f - begin] = -1;
+            if (!m_.outerFaces.empty() && m_.outerFaces[f] != 0) continue;
             if (!quads_.add(f, clear, odd)) odd(f);
+        }
         quads_.finish(clear, odd);
         joinExtremes(part);
         std::sort(closer_.begin(), closer_.end());

@@ -29,6 +29,8 @@ struct Measurement {
     std::vector<std::uint8_t> shortPoints; // per point: 1 at the end of a short edge
     Tally hollowCells;                     // under the dictionary's limit of determinants
     std::vector<std::int32_t> hollowFaces; // theirs, with repetitions
+    // Per cell and per face 1: of the cell only its moments count, of the face nothing; empty: all are measured.
+    std::vector<std::uint8_t> outerCells{}, outerFaces{};
 };
 
 // Of single cells: moments, closedness, aspect ratio, determinant, concavity, shape, edge
