@@ -25,9 +25,10 @@ struct Case {
     const char* options;
 };
 
-const std::array<Case, 12> cases{{
+const std::array<Case, 13> cases{{
     {"Engine2Cyl", nullptr, "shared/engine-2cyl.obj.gz", "--scale 0.001 --size 0.004"},
     {"MotorBike", nullptr, "openfoam/motorBike.obj.gz", "--size 0.02 --box -5 -4 0 15 4 8 --max-size 1"},
+    {"MotorBikeLayers", nullptr, "openfoam/motorBike.obj.gz", "--size 0.03125 --layers 5"},
     {"DrivAer", nullptr, "shared/drivaer-body.obj.gz shared/drivaer-frontWheels.obj.gz shared/drivaer-rearWheels.obj.gz",
      "--size 0.03125 --box -10 -5 0 30 5 8 --max-size 1"},
     {"DrivAerHalfLayers", nullptr,
