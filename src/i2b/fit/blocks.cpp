@@ -49,6 +49,7 @@ NodeBlocks::NodeBlocks(const Band& band) {
     gather(band);
     order(band);
     colour(band);
+    blockOf_ = {};
 }
 
 void NodeBlocks::gather(const Band& band) {
@@ -62,12 +63,17 @@ void NodeBlocks::gather(const Band& band) {
     tbb::parallel_sort(sorted);
     blockOf_.resize(band.movable);
     nodes_.resize(band.movable);
-    for (std::size_t i = 0; i < sorted.size(); ++i) {
-        if (i == 0 || sorted[i].key != sorted[i - 1].key) kindFrom_.push_back({i});
-        kindFrom_.back().back() = i + 1;
+    const auto isFirst = [&](std::size_t i) { return i == 0 || sorted[i].key != sorted[i - 1].key; };
+    std::vector<std::uint32_t> begun(sorted.size() + 1, 0); // blocks before each place
+    parallelFor(sorted.size(), [&](std::size_t i) { begun[i] = isFirst(i); });
+    kindFrom_.resize(exclusiveScan(begun));
+    parallelFor(sorted.size(), [&](std::size_t i) {
+        const std::uint32_t block = begun[i + 1] - 1;
         nodes_[i] = sorted[i].node;
-        blockOf_[static_cast<std::size_t>(nodes_[i])] = static_cast<std::uint32_t>(kindFrom_.size() - 1);
-    }
+        blockOf_[static_cast<std::size_t>(nodes_[i])] = block;
+        if (isFirst(i)) kindFrom_[block].front() = i;
+        if (i + 1 == sorted.size() || isFirst(i + 1)) kindFrom_[block].back() = i + 1;
+    });
 }
 
 // By kind, then by colour: those of one share no corner.

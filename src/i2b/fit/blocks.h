@@ -35,7 +35,7 @@ class NodeBlocks {
 
     std::vector<std::int32_t> nodes_;                     // block by block, kind by kind
     std::vector<std::array<std::size_t, 4>> kindFrom_;    // per block: where each kind begins, and where the block ends
-    std::vector<std::uint32_t> blockOf_;                  // per node
+    std::vector<std::uint32_t> blockOf_;                  // per node, while these are found
     std::vector<std::vector<std::uint32_t>> colours_;
 };
 
