@@ -1,5 +1,6 @@
 #include "i2b/quality/changer.h"
 #include "i2b/core/parallel.h"
+#include "i2b/core/sort_unique.h"
 #include "i2b/quality/measure_steps.h"
 #include <algorithm>
 
@@ -12,12 +13,6 @@ constexpr std::size_t mostThinCells = 16; // the same of layers in a column
 constexpr double stackedShare = 0.5;     // of the largest face of two cells, that they meet in
 constexpr std::int64_t mostNew = 1;      // faces beyond limits that the first of two changes may add
 constexpr int mostConcave = 2;           // cells that a change may make concave: those beside a divided face
-
-void sortUnique(std::vector<std::int32_t>& v) {
-    std::sort(v.begin(), v.end());
-    v.erase(std::unique(v.begin(), v.end()), v.end());
-}
-
 } // namespace
 
 Verdict judge(const LocalEdits::Surroundings& around, const DictionaryLimits& dictionary) {
@@ -218,10 +213,11 @@ std::optional<LocalEdits::Trial> Changer::divide(std::int32_t face, const PolyMe
 
 std::vector<LocalEdits::Trial> Changer::all(std::int32_t face) const {
     const std::int32_t own = edits_.of(mesh_.owner[Index(face)]), other = edits_.across(face, own);
+    if (own == other) return {};
     std::vector<Trial> trials;
     std::vector<std::int32_t> faces;
     for (const std::int32_t group : {own, other}) {
-        if (group < 0 || (group == other && other == own)) continue;
+        if (group < 0) continue;
         edits_.facesOf(group, faces);
         for (const std::int32_t next : byFace(group))
             if ((group == own || next != own) && mayUnite(group, next)) trials.push_back({{std::min(group, next), std::max(group, next)}, true});

@@ -29,7 +29,7 @@ void apply(const LocalEdits::Trial& change, LocalEdits& edits);
 class Changer {
   public:
     using Trial = LocalEdits::Trial;
-    // thinFrom: cells from there on are layers of a height that was asked for.
+    // thinFrom: cells from there on are layers that may be flat (LayerStack::areFlat).
     Changer(const PolyMesh& mesh, const LocalEdits& edits, const DictionaryLimits& limits, std::int32_t thinFrom)
         : mesh_(mesh), edits_(edits), limits_(limits), thinFrom_(thinFrom) {}
 

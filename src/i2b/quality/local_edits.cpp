@@ -1,4 +1,5 @@
 #include "i2b/quality/local_edits.h"
+#include "i2b/core/sort_unique.h"
 #include <algorithm>
 #include <numeric>
 
@@ -6,11 +7,6 @@ namespace i2b {
 namespace {
 
 using Index = std::size_t;
-
-void sortUnique(std::vector<std::int32_t>& v) {
-    std::sort(v.begin(), v.end());
-    v.erase(std::unique(v.begin(), v.end()), v.end());
-}
 
 std::int32_t placeIn(const std::vector<std::int32_t>& sorted, std::int32_t value) {
     const auto at = std::lower_bound(sorted.begin(), sorted.end(), value);

@@ -106,7 +106,7 @@ class Optimiser {
     Front& front_;
     LayerStack& stack_;
     std::vector<std::uint8_t> leavers_; // per wall vertex: need not stay on the geometry; empty: all stay
-    bool thin_;           // are there layers of a height that was asked for?
+    bool thin_;           // are the layers thin?
     int layers_;          // cells of the highest stack of thin layers, which share their faults; 1 where there are none
     WallGuide guide_;
     MeshNodes nodes_;
