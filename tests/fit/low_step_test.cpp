@@ -67,17 +67,17 @@ void expectSound(const ToMesh& run) {
 class LowStep : public testing::TestWithParam<double> {}; // height, in cells
 
 TEST_P(LowStep, FootIsCaptured) {
-    double foot = 0, edge = 0; // of three heights: where the lattice happens to lie decides over some samples of each
+    // Where the lattice happens to lie decides over some samples of each height: less is asked of those beside it.
     for (const double height : {0.97 * GetParam(), GetParam(), 1.03 * GetParam()}) {
+        SCOPED_TRACE(testing::Message() << height << " h");
         const ToMesh run(plateInTop(height * stagesSize), stagesOptions());
         std::array<Vec3, 4> top = plateFoot();
         for (Vec3& p : top) p.z += height * stagesSize;
-        foot += captured(run.front, plateFoot()) / 3, edge += folded(run.front, top) / 3;
-        EXPECT_GT(captured(run.front, plateFoot()), 0.7);
+        const double bar = height == GetParam() ? 0.8 : 0.7;
+        EXPECT_GT(captured(run.front, plateFoot()), bar);
+        EXPECT_GT(folded(run.front, top), bar);
         expectSound(run);
     }
-    EXPECT_GT(foot, 0.8);
-    EXPECT_GT(edge, 0.8);
 }
 
 INSTANTIATE_TEST_SUITE_P(Heights, LowStep, testing::Values(0.4, 0.6, 0.8));

@@ -11,6 +11,7 @@ const double confirmedTurn = std::cos(35 * degree);
 constexpr double besideLine = 0.25; // of h: steps off a line along the planes that meet in it
 constexpr double roundedOff = 0.25; // of h: so far from the geometry two planes may meet where an edge is rounded
 constexpr double atMeeting = 0.1;   // of h: so near to where two planes meet a sharp edge is the one there
+constexpr double offPlane = 0.1;    // sine: a line that is farther off the plane of a foot is that of another surface
 constexpr double rimReach = 0.6;    // of h: so far from the feet the rim of a thin sheet is looked for,
 const double foldedBack = std::cos(120 * degree); // where they stand on its two sides
 constexpr double hiddenBy = 0.05;   // of h: so far behind what is seen a line is hidden
@@ -47,6 +48,12 @@ FeatureIndex::Line implicitLine(const SurfaceIndex& index, Foot a, Foot b, const
     if (on) line.point = on.point; // of a rounded edge the middle
     line.found = on && dot(a.normal, b.normal) < confirmedTurn && isSeen(index, fluid, line.point, h);
     return line;
+}
+
+// Is a place of the geometry on the plane that a foot stands on, as far as surfaces bend?
+bool liesOn(const Foot& foot, const Vec3& place, double h) {
+    const Vec3 way = place - foot.point;
+    return std::abs(dot(foot.normal, way)) < std::max(atMeeting * h, offPlane * norm(way));
 }
 
 // Where the nearest part changes on the way from a foot of one part to a place of another, and how far off that the way is;
@@ -101,10 +108,17 @@ bool turns(const Foot& a, const Foot& b) {
 
 Between lineBetween(const SurfaceIndex& index, const FeatureIndex& features, const Foot& a, const Foot& b, const Vec3& fluid, double h) {
     double radius = 0.8 * norm(a.point - b.point);
-    if (dot(a.normal, b.normal) < foldedBack) radius = std::max(radius, rimReach * h);
+    const bool isRim = dot(a.normal, b.normal) < foldedBack;
+    if (isRim) radius = std::max(radius, rimReach * h);
     const FeatureIndex::Line line = features.closestLine((a.point + b.point) * 0.5, radius);
-    if (line.found && isSeen(index, fluid, line.point, h)) return {line, SnapKind::line};
+    if (line.found && isSeen(index, fluid, line.point, h)) return {line, SnapKind::line, isRim || (liesOn(a, line.point, h) && liesOn(b, line.point, h))};
     return {implicitLine(index, a, b, fluid, h), SnapKind::implicitLine};
+}
+
+Between meetingOf(const SurfaceIndex& index, const FeatureIndex& features, const Foot& a, const Foot& b, const Vec3& fluid, double h) {
+    const FeatureIndex::Line implicit = implicitLine(index, a, b, fluid, h);
+    const FeatureIndex::Line sharp = implicit.found ? features.closestLine(implicit.point, atMeeting * h) : FeatureIndex::Line{};
+    return sharp.found ? Between{sharp, SnapKind::line, false} : Between{implicit, SnapKind::implicitLine, false};
 }
 
 Between lineUnder(const SurfaceIndex& index, const FeatureIndex& features, const Foot& ground, const Foot& riser, const Vec3& fluid, double h) {

@@ -26,11 +26,15 @@ bool isSeen(const SurfaceIndex& index, const Vec3& fluid, const Vec3& place, dou
 struct Between {
     FeatureIndex::Line line;
     SnapKind kind = SnapKind::none;
+    bool isOfBoth = true; // lies on both surfaces that it was looked for between, as far as these bend
 };
 
 // The feature between two feet that turn: a sharp edge of the soup, or else the line in which their tangent planes
 // meet, if the geometry confirms it. h: m, size of the cells around; fluid: a place in the fluid near by.
 Between lineBetween(const SurfaceIndex& index, const FeatureIndex& features, const Foot& a, const Foot& b, const Vec3& fluid, double h);
+
+// The line in which the tangent planes of two feet meet, if the geometry confirms it, or the sharp edge that is there.
+Between meetingOf(const SurfaceIndex& index, const FeatureIndex& features, const Foot& a, const Foot& b, const Vec3& fluid, double h);
 
 // The feature at the foot of a riser, where its plane meets that of what it stands on: no other one near by.
 Between lineUnder(const SurfaceIndex& index, const FeatureIndex& features, const Foot& ground, const Foot& riser, const Vec3& fluid, double h);

@@ -217,4 +217,15 @@ void followFront(const Band& band, const SurfaceIndex& index, const std::vector<
     parallelFor(crossings.size(), [&](std::size_t i) { placeOnFront(band, index, x, crossings[i]); }, 64);
 }
 
+bool stepAside(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, EdgeCrossing& c) {
+    const Vec3 &p = x[std::size_t(band.frontNode[std::size_t(c.p)])], &q = x[std::size_t(band.frontNode[std::size_t(c.q)])];
+    const double length2 = norm2(q - p);
+    if (length2 == 0) return false;
+    const double t = std::clamp(dot(c.wall - p, q - p) / length2, nearEnd, 1 - nearEnd);
+    if (t == c.t) return false;
+    c.t = t;
+    placeOnFront(band, index, x, c);
+    return true;
+}
+
 } // namespace i2b

@@ -34,4 +34,7 @@ std::vector<EdgeCrossing> findCrossings(const Front& front, const Band& band, co
 // After nodes of the front have moved. Those that geometry now parts from their place on the line are no longer alive.
 void followFront(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, std::vector<EdgeCrossing>& crossings);
 
+// Puts a crossing's place on the front where its edge comes nearest to the place on the wall. Gives whether it moved.
+bool stepAside(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, EdgeCrossing& crossing);
+
 } // namespace i2b

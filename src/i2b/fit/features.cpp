@@ -18,11 +18,12 @@ constexpr double bridged = 0.04;    // of h: the same beside a line, where an ed
 constexpr double onLine = 0.05;   // of h: so far from a sharp edge the middle of a cut may be
 const double alongLine = std::cos(20 * degree);
 constexpr double onGeometry = 0.3; // of h: so far the geometry may bend away from a line along its tangent
-constexpr double reach = 2.2; // of h: no node is pulled farther to a feature
+constexpr double reach = 2.2; // of h: no node is pulled farther to a feature,
+constexpr double otherReach = 0.8; // or to one of another surface, as the top of a step is at its foot, where a nearer one may be
 constexpr double apart = 0.2; // of h: nodes beside each other keep so far apart
 constexpr double linesApart = 0.3; // of h: and so do lines beside each other to have a node each
 constexpr double nextReach = 0.3;  // of h: so far a node is pulled to a line beside the one that its neighbour is on,
-constexpr double nextSharp = 0.6;  // or where both are sharp edges, as the two of a thin plate
+constexpr double nextSharp = 0.6;  // or to a sharp edge, as the other one of a thin plate
 
 struct Crossing {
     double distance = 0; // in h
@@ -30,8 +31,9 @@ struct Crossing {
     Snap snap;
 };
 
-// A node on its way to a line; none where that is too far or the node may not be snapped.
-Crossing crossingAt(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x, const Between& between, std::int32_t node) {
+// A node on its way to a line; none where that is farther than `within` (in h) or the node may not be snapped.
+Crossing crossingAt(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x, const Between& between, std::int32_t node,
+                    double within = reach) {
     const auto i = static_cast<std::size_t>(node);
     if (!between.line.found || band.outside[i] != 0) return {};
     FeatureIndex::Line own = between.line;
@@ -41,14 +43,14 @@ Crossing crossingAt(const Band& band, const SurfaceIndex& index, const FeatureIn
         own.point += own.tangent * dot(x[i] - own.point, own.tangent);
     }
     const double d = own.found ? norm(own.point - x[i]) / band.h[i] : reach + 1;
-    if (d > reach) return {};
+    if (d > within) return {};
     return {d, node, -1, {between.kind, own.point, own.tangent}};
 }
 
 // The better end of a wall edge that crosses a line.
 Crossing crossingOf(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x, const Between& between, std::int32_t p,
-                    std::int32_t q) {
-    Crossing first = crossingAt(band, index, features, x, between, p), second = crossingAt(band, index, features, x, between, q);
+                    std::int32_t q, double within = reach) {
+    Crossing first = crossingAt(band, index, features, x, between, p, within), second = crossingAt(band, index, features, x, between, q, within);
     first.other = q, second.other = p;
     if (first.node < 0 || (second.node >= 0 && second.distance < first.distance)) return second;
     return first;
@@ -90,8 +92,7 @@ Crossing besideLine(const Band& band, const SurfaceIndex& index, const FeatureIn
         const Foot riser = footAt(index, way, fluid, h);
         if (!riser.found || norm(riser.point - way) < bridged * h || !turns(foot, riser)) continue;
         const Crossing c = crossingAt(band, index, features, x, lineUnder(index, features, foot, riser, fluid, h), free);
-        const bool areSharp = held.kind == SnapKind::line && c.snap.kind == SnapKind::line;
-        if (c.node < 0 || c.distance > (areSharp ? nextSharp : nextReach)) continue;
+        if (c.node < 0 || c.distance > (c.snap.kind == SnapKind::line ? nextSharp : nextReach)) continue;
         const Vec3 off = c.snap.point - own.point;
         if (norm(off - own.tangent * dot(off, own.tangent)) > linesApart * h) return c;
     }
@@ -203,7 +204,13 @@ std::size_t snapToFeatures(const Band& band, const Front& front, const SurfaceIn
         }
         if (turns(feet[a], feet[b])) {
             const Vec3& fluid = x[static_cast<std::size_t>(band.frontNode[a])];
-            crossings[2 * e] = crossingOf(band, index, features, x, lineBetween(index, features, feet[a], feet[b], fluid, std::max(band.h[a], band.h[b])), p, q);
+            const double h = std::max(band.h[a], band.h[b]);
+            const Between between = lineBetween(index, features, feet[a], feet[b], fluid, h);
+            Crossing& crossing = crossings[2 * e];
+            crossing = crossingOf(band, index, features, x, between, p, q, between.isOfBoth ? reach : otherReach);
+            if (between.isOfBoth || crossing.node >= 0) return;
+            crossing = crossingOf(band, index, features, x, meetingOf(index, features, feet[a], feet[b], fluid, h), p, q, otherReach);
+            if (crossing.node < 0) crossing = crossingOf(band, index, features, x, between, p, q);
         } else if (feet[a].found && feet[b].found) {
             const double h = std::max(band.h[a], band.h[b]);
             const ClosestPoint near = index.closeEnough((x[a] + x[b]) * 0.5, steps * h, flat * h); // most edges lie on what they stand on

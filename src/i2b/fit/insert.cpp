@@ -58,6 +58,7 @@ class Inserter {
     void lookForCrossings();
     std::vector<RoomWish> roomWanted(const std::vector<Cuts>& cuts) const;
     void wishRoom(const Ring& piece, std::vector<RoomWish>& wishes) const;
+    bool stepAsideWhereRefused(const std::vector<Cuts>& cuts);
     bool prune(const std::vector<Cuts>& cuts);
     void apply(const std::vector<Cuts>& cuts);
     const Vec3& wallAt(const Place& p) const { return p.vertex >= 0 ? x_[std::size_t(p.vertex)] : crossings_[std::size_t(p.crossing)].wall; }
@@ -285,6 +286,25 @@ bool Inserter::prune(const std::vector<Cuts>& cuts) {
     return any;
 }
 
+// A cut is refused where a prism of it would fold: the place on the front is then as straight under the wall's as its edge
+// allows, which follows the other side of the layer less evenly. Gives whether any crossing moved.
+bool Inserter::stepAsideWhereRefused(const std::vector<Cuts>& cuts) {
+    std::vector<std::uint8_t> refused(crossings_.size(), 0);
+    for (const Cuts& c : cuts) {
+        if (c.valid || c.pieces.size() < 2) continue;
+        for (const Ring& piece : c.pieces) {
+            for (const Place& p : piece) {
+                if (p.crossing >= 0) refused[std::size_t(p.crossing)] = 1;
+            }
+        }
+    }
+    bool any = false;
+    for (std::size_t i = 0; i < crossings_.size(); ++i) {
+        if (refused[i]) any = stepAside(band_, index_, x_, crossings_[i]) || any;
+    }
+    return any;
+}
+
 void Inserter::apply(const std::vector<Cuts>& cuts) {
     std::vector<std::int32_t> vertexOf(crossings_.size(), -1);
     const auto lattice = static_cast<std::int32_t>(front_.corePoints);
@@ -354,6 +374,7 @@ std::size_t Inserter::run() {
         followFront(band_, index_, x_, crossings_);
         cutAll();
     }
+    if (stepAsideWhereRefused(cuts)) cutAll();
     const auto isStale = [&](const Cuts& c) {
         return std::any_of(c.pieces.begin(), c.pieces.end(), [&](const Ring& piece) {
             return std::any_of(piece.begin(), piece.end(), [&](const Place& p) { return p.crossing >= 0 && !crossings_[std::size_t(p.crossing)].alive; });
