@@ -1,6 +1,8 @@
 #include "i2b/quality/local_edits.h"
+#include "i2b/core/numbering.h"
 #include "i2b/core/sort_unique.h"
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 namespace i2b {
@@ -8,25 +10,20 @@ namespace {
 
 using Index = std::size_t;
 
-std::int32_t placeIn(const std::vector<std::int32_t>& sorted, std::int32_t value) {
-    const auto at = std::lower_bound(sorted.begin(), sorted.end(), value);
-    return at != sorted.end() && *at == value ? static_cast<std::int32_t>(at - sorted.begin()) : -1;
-}
-
 // A mesh that faces are put into one by one.
 class MeshBuilder {
   public:
-    MeshBuilder(const PolyMesh& from, const std::vector<std::int32_t>& points, std::int32_t cells) : from_(from), points_(points) {
+    MeshBuilder(const PolyMesh& from, const Numbering& points, std::int32_t cells) : from_(from), points_(points) {
         mesh_.cells = cells;
-        for (const std::int32_t p : points) mesh_.points.push_back(from.points[Index(p)]);
+        for (const std::int32_t p : points.items()) mesh_.points.push_back(from.points[Index(p)]);
         mesh_.faceOffsets.push_back(0);
     }
     // Out of owner into neighbour, one of which may be -1. from: where it is divided.
     void add(std::int32_t face, std::int32_t owner, std::int32_t neighbour, const std::uint32_t* from) {
         const auto v = from_.face(face);
         const bool turned = neighbour < 0 ? false : owner < 0 || owner > neighbour;
-        if (!from) return addLoop({v.begin(), v.end()}, owner, neighbour, turned);
-        for (const auto& [a, b, c] : trianglesOf(from_.points, v, *from)) addLoop({v[a], v[b], v[c]}, owner, neighbour, turned);
+        if (!from) return addLoop(v, owner, neighbour, turned);
+        for (const auto& [a, b, c] : trianglesOf(from_.points, v, *from)) addLoop(std::array{v[a], v[b], v[c]}, owner, neighbour, turned);
     }
     Index faces() const { return mesh_.owner.size(); }
     PolyMesh take() {
@@ -35,9 +32,9 @@ class MeshBuilder {
     }
 
   private:
-    void addLoop(std::vector<std::int32_t> loop, std::int32_t owner, std::int32_t neighbour, bool turned) {
-        if (turned) std::reverse(loop.begin(), loop.end());
-        for (const std::int32_t p : loop) mesh_.faceVertices.push_back(placeIn(points_, p));
+    void addLoop(std::span<const std::int32_t> loop, std::int32_t owner, std::int32_t neighbour, bool turned) {
+        for (const std::int32_t p : loop) mesh_.faceVertices.push_back(points_.placeOf(p));
+        if (turned) std::reverse(mesh_.faceVertices.end() - static_cast<std::ptrdiff_t>(loop.size()), mesh_.faceVertices.end());
         mesh_.faceOffsets.push_back(static_cast<std::uint32_t>(mesh_.faceVertices.size()));
         const bool inner = owner >= 0 && neighbour >= 0;
         mesh_.owner.push_back(inner ? std::min(owner, neighbour) : std::max(owner, neighbour));
@@ -45,7 +42,7 @@ class MeshBuilder {
     }
 
     const PolyMesh& from_;
-    const std::vector<std::int32_t>& points_;
+    const Numbering& points_;
     PolyMesh mesh_;
 };
 
@@ -124,14 +121,18 @@ std::vector<std::int32_t> LocalEdits::neighboursOf(const std::vector<std::int32_
 }
 
 LocalEdits::Surroundings LocalEdits::around(const Trial& trial) const {
-    std::vector<std::int32_t> cells = neighboursOf(trial.groups), faces, points;
-    for (const std::int32_t group : cells) facesOf(group, faces);
+    const std::vector<std::int32_t> groups = neighboursOf(trial.groups);
+    std::vector<std::int32_t> faces;
+    for (const std::int32_t group : groups) facesOf(group, faces);
     sortUnique(faces);
     const auto isTaken = [&](std::int32_t group) { return group != trial.groups.front() && std::ranges::binary_search(trial.groups, group); };
-    if (trial.united) std::erase_if(cells, isTaken);
+    Numbering cells, points;
+    for (const std::int32_t group : groups)
+        if (!trial.united || !isTaken(group)) cells.add(group);
+    cells.close();
     const auto cellOf = [&](std::int32_t cell) {
         const std::int32_t group = of(cell);
-        return placeIn(cells, trial.united && isTaken(group) ? trial.groups.front() : group);
+        return cells.placeOf(trial.united && isTaken(group) ? trial.groups.front() : group);
     };
     struct Sides { std::int32_t face, owner, neighbour; };
     std::vector<Sides> inner, outer;
@@ -139,13 +140,12 @@ LocalEdits::Surroundings LocalEdits::around(const Trial& trial) const {
         const std::int32_t own = cellOf(mesh_.owner[Index(f)]), nei = f < mesh_.internalFaces() ? cellOf(mesh_.neighbour[Index(f)]) : -1;
         if (own == nei) continue;
         (own >= 0 && nei >= 0 ? inner : outer).push_back({f, own, nei});
-        const auto v = mesh_.face(f);
-        points.insert(points.end(), v.begin(), v.end());
+        for (const std::int32_t p : mesh_.face(f)) points.add(p);
     }
-    sortUnique(points);
+    points.close();
     Surroundings result;
-    for (const std::int32_t group : cells) result.outerCells.push_back(!std::ranges::binary_search(trial.groups, group));
-    MeshBuilder mesh(mesh_, points, static_cast<std::int32_t>(cells.size()));
+    for (const std::int32_t group : cells.items()) result.outerCells.push_back(!std::ranges::binary_search(trial.groups, group));
+    MeshBuilder mesh(mesh_, points, static_cast<std::int32_t>(cells.items().size()));
     const auto isOuter = [&](std::int32_t cell) { return cell < 0 || result.outerCells[Index(cell)] != 0; };
     for (const auto& sides : {inner, outer}) {
         for (const Sides& s : sides) {
