@@ -15,8 +15,10 @@ inline QualityLimits limitsOf(double nonOrthogonality = 37) { // stricter than r
 }
 
 struct Boxed {
-    explicit Boxed(const QualityLimits& limits = limitsOf())
-        : run(flushHalves(), stagesOptions()), cellFaces(buildCellFaces(run.mesh)), faults(run.mesh, cellFaces, limits),
+    // thin: the layer on the wall counts as thin cells.
+    explicit Boxed(const QualityLimits& limits = limitsOf(), bool thin = false)
+        : run(flushHalves(), stagesOptions()), cellFaces(buildCellFaces(run.mesh)), thinFrom(run.mesh.cells - (thin ? static_cast<std::int32_t>(run.layers.cells()) : 0)),
+          faults(run.mesh, cellFaces, limits, thinFrom),
           wishes(run.fitted.snaps.size()),
           optimiser(run.mesh, cellFaces, faults, run.front, run.layers, {*run.painted.index, run.features, run.fitted.snaps, wishes}) {}
 
@@ -52,6 +54,7 @@ struct Boxed {
     double offWall(std::size_t v) const { return run.painted.index->closest(wallOf(v)).distance; }
     ToMesh run;
     Rows cellFaces;
+    std::int32_t thinFrom;
     MeshFaults faults;
     std::vector<Snap> wishes;
     Optimiser optimiser;

@@ -1,7 +1,9 @@
 // Proves: on a box whose wall nodes were put in bad places, mend() makes the poor faces vanish and never raises the worst;
 // mendTets() makes all faces divide into tetrahedra within the limits, mendTetsOffWall() those that cannot on the wall;
-// pullIn() brings nodes back onto the geometry; snapWished() brings them to a line that they should be on, or leaves them
+// mendFlatAt() raises the determinants of thin cells at the cost of nothing else; pullIn() brings nodes back onto the geometry; snapWished() brings them to a line that they should be on, or leaves them
 // be; no cell turns bad; the same on any number of threads.
+#include "i2b/quality/measures.h"
+#include "i2b/quality/mesh_geometry.h"
 #include "i2b/quality/quality_report.h"
 #include "quality/boxed.h"
 #include <gtest/gtest.h>
@@ -34,6 +36,34 @@ std::vector<std::size_t> displaceAlong(Boxed& b) {
         moved.push_back(v);
     }
     return moved;
+}
+
+// Of the cells from one on, ascending, those whose determinant is under a limit.
+std::vector<std::int32_t> flatCells(const Boxed& b, std::int32_t from, double limit) {
+    std::vector<std::int32_t> cells;
+    CellFaceShapes shapes(b.run.mesh);
+    for (std::int32_t c = from; c < b.run.mesh.cells; ++c)
+        if (cellFullness(shapes.of(b.cellFaces[c])) < limit) cells.push_back(c);
+    return cells;
+}
+
+TEST(Optimise, MendFlatRaisesDeterminantsOfThinCells) {
+    QualityLimits limits = limitsOf(60);
+    limits.determinant = 0.7; // a layer with cells as high as wide, most of which have more
+    Boxed b(limits, true);
+    const std::vector<std::int32_t> before = flatCells(b, b.thinFrom, limits.determinant);
+    displaceAlong(b);
+    std::vector<std::int32_t> flat;
+    std::ranges::set_difference(flatCells(b, b.thinFrom, limits.determinant), before, std::back_inserter(flat));
+    ASSERT_GT(flat.size(), 5u);
+    const std::int64_t poor = b.poor();
+    const std::size_t undivided = b.faults.undividedFaces().size();
+    ASSERT_TRUE(b.faults.badCells().empty());
+    b.optimiser.mendFlatAt(flat, 12);
+    EXPECT_LE(flatCells(b, b.thinFrom, limits.determinant).size(), before.size() + flat.size() / 4);
+    EXPECT_TRUE(b.faults.badCells().empty());
+    EXPECT_LE(b.poor(), poor);
+    EXPECT_LE(b.faults.undividedFaces().size(), undivided);
 }
 
 TEST(Optimise, MendMakesPoorFacesVanish) {

@@ -118,9 +118,11 @@ void CellStar::judgeCell(Index i, Badness& out) {
         const double pyramid = cells_[i] < thinFrom_ ? cosine : sign * dot(row_[k].area, arm) / std::max(m.volume, 1e-300);
         if (pyramid < leastPyramid) add(out, std::min(wrong, 1 + (leastPyramid - pyramid) / leastPyramid));
     }
-    if (cells_[i] >= thinFrom_) return;
-    const double determinant = cellDeterminant(mesh_, faces, row_, Directions());
-    add(out, std::min(wrong, limits_.determinant / std::max(determinant, 1e-300)));
+    const bool isThin = cells_[i] >= thinFrom_;
+    const double least = isThin ? leastFull_ : limits_.determinant;
+    if (isThin && least == 0) return;
+    const double determinant = isThin ? cellFullness(row_) : cellDeterminant(mesh_, faces, row_, Directions());
+    add(out, std::min(wrong, least / std::max(determinant, 1e-300)));
 }
 
 void CellStar::judgeFace(Index i, Badness& out) {

@@ -36,6 +36,8 @@ class CellStar {
     void take(const std::vector<std::int32_t>& points, const std::vector<std::int32_t>& cells);
     void gather(const std::vector<std::int32_t>& points, const std::vector<std::int32_t>& from) { take(points, cellsAt(points, from)); }
     const std::vector<std::int32_t>& cells() const { return cells_; } // ascending
+    // From here on determinants of thin cells (cellFullness) count too: at least so much.
+    void countFlat(double least) { leastFull_ = least; }
     // With these points of the mesh as they are now; no others may have moved since.
     Badness judge();
     // The same of tetrahedra, which are in no other figure. Looks no further where the sum comes to `most`.
@@ -67,6 +69,7 @@ class CellStar {
     QualityLimits limits_;
     std::int32_t thinFrom_;
     bool thinWeights_; // do weights and volume ratios among thin cells count?
+    double leastFull_ = 0; // of thin cells; 0: does not count
     double orthoLimit_; // of 1 less the cosine
     std::vector<std::int32_t> points_, cells_;
     std::vector<Face> faces_;                          // ascending

@@ -13,7 +13,6 @@ using Index = std::size_t;
 constexpr int mostRounds = 16, mostOrders = 4;
 constexpr std::size_t fewFaces = 2000;  // to be helped: other orders are tried
 constexpr std::size_t fewLeft = 4;      // that nothing has helped, or beside one: pairs of changes are tried
-constexpr std::size_t mostFlat = 200;    // thin cells of a small determinant
 
 using Trial = LocalEdits::Trial;
 

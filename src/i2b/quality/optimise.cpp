@@ -205,6 +205,24 @@ void Optimiser::mendAt(const std::vector<std::int32_t>& cells, int sweeps) {
     }
 }
 
+void Optimiser::mendFlatAt(const std::vector<std::int32_t>& cells, int sweeps) {
+    leavers_.clear();
+    leastFull_ = faults_.limits().determinant;
+    const std::vector<std::int32_t> undivided = faults_.undividedFaces();
+    for (int i = 0; i < sweeps; ++i) {
+        std::vector<Task> tasks = tasksOf(cells);
+        if (sweep(tasks, [&](const Task& t, Worker& w) { return mendNode(t, w); }) == 0) break;
+    }
+    // Those moves do not ask whether faces divide.
+    for (int i = 0; i < sweeps; ++i) {
+        std::vector<std::int32_t> fresh;
+        std::ranges::set_difference(faults_.undividedFaces(), undivided, std::back_inserter(fresh));
+        std::vector<Task> tasks = tasksOfCellsAt(fresh);
+        if (tasks.empty() || sweep(tasks, [&](const Task& t, Worker& w) { return mendNodeTets(t, w); }) == 0) break;
+    }
+    leastFull_ = 0;
+}
+
 std::vector<Optimiser::Task> Optimiser::tasksOfCellsAt(const std::vector<std::int32_t>& faces) const {
     std::vector<std::int32_t> cells;
     for (const std::int32_t f : faces) {

@@ -32,6 +32,8 @@ class Optimiser {
     std::int64_t mend(int sweeps, bool mayLeave = false);
     // The same of those among these cells (ascending).
     void mendAt(const std::vector<std::int32_t>& cells, int sweeps);
+    // The nodes of these thin cells, whose determinants count then, which a limit for all cells has them keep to.
+    void mendFlatAt(const std::vector<std::int32_t>& cells, int sweeps);
     // The nodes of faces that do not divide into tetrahedra or turn back at a corner, then all of the cells beside them, within all
     // other limits.
     void mendTets(int sweeps);
@@ -111,6 +113,7 @@ class Optimiser {
     WallGuide guide_;
     MeshNodes nodes_;
     std::optional<std::map<MeshNode, NodeMove>> tracked_; // where they were
+    double leastFull_ = 0; // CellStar::countFlat()
 };
 
 } // namespace i2b

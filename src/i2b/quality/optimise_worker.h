@@ -21,7 +21,9 @@ inline bool mayStand(const Badness& now, const Badness& before) {
 
 struct Optimiser::Worker {
     Worker(Optimiser& o) : optimiser(o), star(o.mesh_, o.cellFaces_, o.faults_.moments(), o.faults_.limits(), o.faults_.thinFrom(),
-             o.faults_.countsThinWeights()) {}
+             o.faults_.countsThinWeights()) {
+        star.countFlat(o.leastFull_);
+    }
 
     void begin(const Task& t) {
         hang(t);

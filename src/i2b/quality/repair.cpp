@@ -1,8 +1,10 @@
 #include "i2b/quality/repair.h"
 #include "i2b/core/parallel.h"
+#include "i2b/core/sort_unique.h"
 #include "i2b/quality/dictionary_measure.h"
 #include "i2b/quality/last_resort.h"
 #include "i2b/quality/mesh_faults.h"
+#include "i2b/quality/poor_places.h"
 #include "i2b/quality/retreat.h"
 #include "i2b/quality/step_back.h"
 #include <algorithm>
@@ -18,6 +20,8 @@ constexpr int bendRounds = 3, thinPause = 4; // of columns bent anew, with sweep
 constexpr int thinSweeps = 24;    // of thin layers: all of a column move as one
 constexpr int wishSweeps = 2;
 constexpr int pullSweeps = 3;
+constexpr int flatSweeps = 12;
+constexpr std::size_t fewFlat = 64; // faces of thin cells of a small determinant that nothing else helps
 constexpr int tetSweeps = 8, offSweeps = 16, offRounds = 2, backRounds = 3;
 
 // A little inside those that the report judges by: checkMesh's, and the user's where they ask for more.
@@ -38,6 +42,40 @@ std::vector<Vec3> wallPositions(const Front& front) {
     std::vector<Vec3> positions(front.front.size());
     parallelFor(positions.size(), [&](std::size_t v) { positions[v] = front.wall(v); }, 4096);
     return positions;
+}
+
+std::vector<std::int32_t> thinCellsAt(const PolyMesh& mesh, const std::vector<std::int32_t>& faces, std::int32_t thinFrom) {
+    std::vector<std::int32_t> cells;
+    for (const std::int32_t f : faces) {
+        cells.push_back(mesh.owner[static_cast<std::size_t>(f)]);
+        if (f < mesh.internalFaces()) cells.push_back(mesh.neighbour[static_cast<std::size_t>(f)]);
+    }
+    std::erase_if(cells, [&](std::int32_t c) { return c < thinFrom; });
+    sortUnique(cells);
+    return cells;
+}
+
+// Determinants go with the height of thin cells: only those under the limit count where few are, and of these only those that the last
+// resort would not help. Undone where that leaves as many of them, faces that do not divide among them.
+void mendFlatCells(const PolyMesh& mesh, const Rows& cellFaces, const MeshFaults& faults, const DictionaryLimits& limits, Optimiser& optimiser) {
+    const std::int32_t thinFrom = faults.thinFrom();
+    if (thinFrom >= mesh.cells || !(DictionaryBounds(limits).determinant > 0)) return;
+    const auto flatFaces = [&] { return facesOfFlatCells(mesh, cellFaces, thinFrom, limits.determinant, mostFlat); };
+    const auto left = [&](const std::vector<std::int32_t>& flat) {
+        std::vector<std::int32_t> all;
+        std::ranges::set_union(flat, faults.undividedFaces(), std::back_inserter(all));
+        return facesBeyondHelp(mesh, cellFaces, all, limits, thinFrom);
+    };
+    const std::vector<std::int32_t> flat = flatFaces();
+    const std::vector<std::int32_t> before = flat.empty() ? flat : left(flat);
+    if (before.empty() || before.size() > fewFlat) return;
+    FaultCount was, now;
+    faults.poorCells(was);
+    optimiser.track();
+    optimiser.mendFlatAt(thinCellsAt(mesh, before, thinFrom), flatSweeps);
+    faults.poorCells(now);
+    if (faults.badCells().empty() && now.all <= was.all && left(flatFaces()).size() < before.size()) optimiser.keep();
+    else optimiser.undo();
 }
 
 } // namespace
@@ -119,6 +157,8 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, L
         if (stepBackFrom(left, {mesh, cellFaces, faults, front, lattice, startThickness, limits}, optimiser) == 0) break;
         left = facesLeft();
     }
+    mendFlatCells(mesh, cellFaces, faults, limits, optimiser);
+    isClean();
     summary.poorRemaining = poor.all;
     summary.unmended = faults.poorFaces();
     for (const std::int32_t f : faults.undividedFaces())
