@@ -5,7 +5,7 @@ build_packages=(
   libtbb-dev libopenvdb-dev libboost-dev libboost-iostreams-dev libblosc-dev
   libembree-dev libopenmesh-dev libeigen3-dev zlib1g-dev libxxhash-dev
   libcli11-dev libtomlplusplus-dev libfmt-dev nlohmann-json3-dev
-  libdeflate-dev libgtest-dev libgmock-dev libbenchmark-dev
+  libdeflate-dev libjemalloc-dev libgtest-dev libgmock-dev libbenchmark-dev
 )
 test_packages=(openfoam openfoam-examples python3-openvdb python3-vtk9)
 # Peers that benchmarks/run measures beside ours; built and run only where they are.

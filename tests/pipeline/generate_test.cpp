@@ -1,34 +1,16 @@
 // Proves: whatever soup comes in, generate() gives a mesh that is valid, the same on any number of threads,
 // or an Error of kind input that tells the user what to do; never a fault of ours.
 #include "i2b/core/error.h"
-#include "i2b/geometry/write_stl.h"
 #include "i2b/program/generate.h"
 #include "i2b/quality/quality_report.h"
 #include "pipeline/random_case.h"
+#include "pipeline/temporary_stl.h"
 #include <cstdlib>
-#include <filesystem>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
-#include <unistd.h>
 
 namespace i2b::test {
 namespace {
-
-class TemporaryStl {
-  public:
-    TemporaryStl(const Surface& soup, unsigned seed)
-        : path_(std::filesystem::temp_directory_path() /
-                ("i2b_pipeline_" + std::to_string(getpid()) + "_" + std::to_string(seed) + ".stl")) {
-        writeStl(soup, path_.string(), StlFormat::ascii);
-    }
-    ~TemporaryStl() { std::filesystem::remove(path_); }
-    TemporaryStl(const TemporaryStl&) = delete;
-    TemporaryStl& operator=(const TemporaryStl&) = delete;
-    std::string path() const { return path_.string(); }
-
-  private:
-    std::filesystem::path path_;
-};
 
 struct Outcome {
     std::uint64_t sum = 0;

@@ -82,13 +82,12 @@ TEST(Curvature, NeitherOrientationNorRepeatedTrianglesMatter) {
 // In a size field: cells per 360 degrees are reached to within one level, down to the smallest size, with a note.
 TEST(Curvature, GivesTrianglesTheirLevel) {
     const Surface pipe = cylinder(0.5, 48, 2, 4);
-    const SurfaceIndex index(pipe);
     SizeOptions size;
     size.surface = 0.2, size.max = 0.4, size.min = 0.02, size.curvature = 30;
     DomainOptions domain;
     domain.box = Box{{-1.6, -1.6, -1.6}, {1.6, 1.6, 3.2}};
     SizeField field = makeSizeField(pipe, size, domain);
-    addAutomaticSizes(field, index, size, 40);
+    addCurvature(field, pipe, size, 40);
     ASSERT_EQ(field.triangleLevel.size(), pipe.triangles.size());
     for (const LevelTriple& level : field.triangleLevel) {
         EXPECT_LE(field.lattice.h(level), 1.1 * arc(0.5, 30));
@@ -97,7 +96,7 @@ TEST(Curvature, GivesTrianglesTheirLevel) {
     EXPECT_TRUE(field.notes.empty());
     size.curvature = 3000;
     field = makeSizeField(pipe, size, domain);
-    addAutomaticSizes(field, index, size, 40);
+    addCurvature(field, pipe, size, 40);
     EXPECT_LE(field.minSize, 0.02);
     EXPECT_GT(field.minSize, 0.01);
     EXPECT_THAT(field.notes, testing::ElementsAre(testing::HasSubstr("the smallest are 0.02 m")));

@@ -25,7 +25,7 @@ Meshed mesh(const Surface& soup, int gapCells, double min = 0.01) {
     Meshed m;
     m.field = makeSizeField(soup, size, domain);
     const SurfaceIndex index(soup);
-    addAutomaticSizes(m.field, index, size, 40);
+    addGaps(m.field, findGaps(m.field, index, size), size);
     const std::vector<CellLevel> at = cutAtTargetLevels(soup, m.field);
     m.grid = buildCellGrid(m.field, wantedCells(m.field, at));
     return m;

@@ -6,6 +6,10 @@
 namespace i2b {
 namespace {
 
+// Cells of its size around a gap, instead of a buffer: gaps lie close together where there are many. Fewer, and what is sharp
+// beside them meets too many hanging nodes.
+constexpr int besideGaps = 2;
+
 using Lists = std::array<std::vector<Mask::Ptr>, 3>;
 
 class Collector {
@@ -76,7 +80,7 @@ WantedCells wantedCells(const SizeField& field, const std::vector<CellLevel>& at
     Collector all(lattice, differs(field, atTarget));
     for (const LevelBox& rule : field.boxes) all.takeSpace(cellsOf(rule.box, lattice, rule.level), rule.level);
     for (const LevelShape& rule : field.shapes) all.takeSpace(cellsOf(rule.shape, lattice, rule.level), rule.level);
-    for (const LevelCells& gap : field.gaps) all.addWalls(*maskOf(gap.cells), gap.level);
+    for (const LevelCells& gap : field.gaps) all.takeSpace(dilated(*maskOf(gap.cells), besideGaps, lattice.cells(gap.level)), gap.level);
     for (const CellLevel& cut : atTarget) all.addWalls(*cut.cells, cut.level);
     return all.result();
 }

@@ -1,8 +1,10 @@
 #include "i2b/program/generate.h"
 #include "i2b/carve/carve.h"
+#include "i2b/carve/flow_lookup.h"
 #include "i2b/core/checksum.h"
 #include "i2b/core/error.h"
 #include "i2b/core/memory.h"
+#include "i2b/core/parallel.h"
 #include "i2b/geometry/features.h"
 #include "i2b/geometry/rims.h"
 #include "i2b/grid/build.h"
@@ -26,6 +28,40 @@ void refuseTooLarge(const Surface& surface, const SizeField& field, int layers, 
     throw Error(ErrorKind::input, fmt::format("this mesh would need about {:.1f} GB of memory", need * 1e-9),
                 fmt::format("{:.1f} GB are free", have * 1e-9),
                 "give a larger --size, a smaller --box, or run it on a larger machine");
+}
+
+CellGrid gridOf(const Surface& surface, const SizeField& field, CutCells& cut) {
+    const std::vector<CellLevel> atTarget = cutAtTargetLevels(surface, field);
+    CellGrid grid = buildCellGrid(field, wantedCells(field, atTarget));
+    cut = cutLeafCells(surface, field, grid, atTarget);
+    return grid;
+}
+
+Regions regionsOf(const Surface& surface, const SizeField& field, const CellGrid& grid, const CutCells& cut, const DomainOptions& domain) {
+    Regions regions = labelRegions(grid, cut);
+    findTouchedParts(regions, surface, field, grid, cut);
+    chooseRegions(regions, grid, cut, domain);
+    return regions;
+}
+
+// Which gaps the flow comes to shows where all of them have cells small enough to enter: a grid that is painted and
+// carved for that alone.
+void addGapsInFlow(SizeField& field, const Surface& surface, const SurfaceIndex& index, const Options& options) {
+    const std::vector<Gap> gaps = findGaps(field, index, options.size);
+    if (gaps.empty()) return;
+    SizeField everywhere = field;
+    addGaps(everywhere, gaps, options.size);
+    CutCells cut;
+    const CellGrid grid = gridOf(surface, everywhere, cut);
+    const KeptCells kept = carve(grid, cut, regionsOf(surface, everywhere, grid, cut, options.domain), index, options.fit);
+    const FlowLookup flow(grid, kept, index);
+    std::vector<std::uint8_t> reached(gaps.size());
+    parallelFor(gaps.size(), [&](std::size_t i) { reached[i] = flow.reaches(gaps[i].middle()); });
+    std::vector<Gap> inFlow;
+    for (std::size_t i = 0; i < gaps.size(); ++i) {
+        if (reached[i]) inFlow.push_back(gaps[i]);
+    }
+    addGaps(field, inFlow, options.size);
 }
 
 // What the mesh has come to, by itself and beside the geometry.
@@ -79,27 +115,15 @@ std::unique_ptr<GridResult> generateGrid(const Options& options, Context& contex
     refuseTooLarge(r.surface, r.field, layerCells, road != Road::mesh);
     if (options.size.curvature > 0 || options.size.gapCells > 0) {
         Stage timed(context, "automatic sizes");
-        addAutomaticSizes(r.field, *r.index, options.size, options.geometry.featureAngle);
+        if (options.size.curvature > 0) addCurvature(r.field, r.surface, options.size, options.geometry.featureAngle);
+        if (options.size.gapCells > 0) addGapsInFlow(r.field, r.surface, *r.index, options);
         timed.items = r.surface.triangles.size();
         refuseTooLarge(r.surface, r.field, layerCells, road != Road::mesh);
     }
     r.grid = stage(
-        context, "grid",
-        [&] {
-            const std::vector<CellLevel> atTarget = cutAtTargetLevels(r.surface, r.field);
-            CellGrid grid = buildCellGrid(r.field, wantedCells(r.field, atTarget));
-            r.cut = cutLeafCells(r.surface, r.field, grid, atTarget);
-            return grid;
-        },
-        [](const CellGrid& g) { return g.cellCount(); });
+        context, "grid", [&] { return gridOf(r.surface, r.field, r.cut); }, [](const CellGrid& g) { return g.cellCount(); });
     r.regions = stage(
-        context, "paint",
-        [&] {
-            Regions regions = labelRegions(r.grid, r.cut);
-            findTouchedParts(regions, r.surface, r.field, r.grid, r.cut);
-            chooseRegions(regions, r.grid, r.cut, options.domain);
-            return regions;
-        },
+        context, "paint", [&] { return regionsOf(r.surface, r.field, r.grid, r.cut, options.domain); },
         [](const Regions& regions) { return regions.table.size(); });
     if (road == Road::regions) return out;
     r.kept = stage(

@@ -1,13 +1,17 @@
 #include "i2b/sizing/automatic.h"
 #include "i2b/core/parallel.h"
 #include "i2b/sizing/curvature.h"
-#include "i2b/sizing/gaps.h"
 #include <fmt/format.h>
 
 namespace i2b {
 namespace {
 
-void addCurvature(SizeField& field, const Surface& surface, const SizeOptions& size, double featureAngle, double smallest) {
+double smallestOf(const SizeField& field, const SizeOptions& size) { return std::min(size.min > 0 ? size.min : size.surface / 2, field.maxSize); }
+
+} // namespace
+
+void addCurvature(SizeField& field, const Surface& surface, const SizeOptions& size, double featureAngle) {
+    const double smallest = smallestOf(field, size);
     const std::vector<double> sizes = curvatureSizes(surface, size.curvature, featureAngle);
     const double least = orderedReduce(
         sizes.size(), field.maxSize,
@@ -25,21 +29,22 @@ void addCurvature(SizeField& field, const Surface& surface, const SizeOptions& s
     if (least < smallest) {
         field.notes.push_back(fmt::format("curvature asks for cells down to {:.3g} m; the smallest are {:g} m (min-size)", least, smallest));
     }
+    settleLevels(field);
 }
 
-} // namespace
+std::vector<Gap> findGaps(const SizeField& field, const SurfaceIndex& index, const SizeOptions& size) {
+    return findGaps(field, index, size.gapCells, smallestOf(field, size));
+}
 
-void addAutomaticSizes(SizeField& field, const SurfaceIndex& index, const SizeOptions& size, double featureAngle) {
-    const double smallest = std::min(size.min > 0 ? size.min : size.surface / 2, field.maxSize);
-    if (size.curvature > 0) addCurvature(field, index.surface(), size, featureAngle, smallest);
-    if (size.gapCells > 0) {
-        GapCells gaps = findGaps(field, index, size.gapCells, smallest);
-        field.gaps = std::move(gaps.levels);
-        if (gaps.narrowest > 0) {
-            field.notes.push_back(fmt::format(
-                "gaps narrower than {:.3g} m hold fewer than {} of the smallest cells, {:g} m (min-size); the narrowest is {:.3g} m, at ({:g} {:g} {:g})",
-                size.gapCells * smallest, size.gapCells, smallest, gaps.narrowest, gaps.place.x, gaps.place.y, gaps.place.z));
-        }
+void addGaps(SizeField& field, const std::vector<Gap>& gaps, const SizeOptions& size) {
+    const double smallest = smallestOf(field, size);
+    field.gaps = cellsAlong(gaps, field.lattice);
+    const auto narrowest = std::min_element(gaps.begin(), gaps.end(), [](const Gap& a, const Gap& b) { return a.width < b.width; });
+    if (narrowest != gaps.end() && double(narrowest->width) < size.gapCells * smallest) {
+        const Vec3 place = narrowest->middle();
+        field.notes.push_back(fmt::format(
+            "gaps narrower than {:.3g} m hold fewer than {} of the smallest cells, {:g} m (min-size); the narrowest is {:.3g} m, at ({:g} {:g} {:g})",
+            size.gapCells * smallest, size.gapCells, smallest, narrowest->width, place.x, place.y, place.z));
     }
     settleLevels(field);
 }

@@ -1,5 +1,7 @@
 #include "i2b/sizing/gaps.h"
 #include "i2b/core/parallel.h"
+#include "i2b/core/sort_unique.h"
+#include <algorithm>
 #include <array>
 #include <tbb/parallel_sort.h>
 #include <tuple>
@@ -11,7 +13,6 @@ constexpr double parallelEnough = 0.5; // cosine between the normals of opposite
 constexpr std::size_t mostLevels = 32;
 
 using Triangle = std::array<Vec3, 3>;
-using CellsByLevel = std::array<std::vector<Index3>, mostLevels>;
 
 // A triangle of the soup, or a piece of a large one.
 struct Piece {
@@ -41,53 +42,35 @@ bool outside(const Triangle& t, const Box& domain) {
     return !box.overlaps(domain);
 }
 
-void sortUnique(std::vector<Index3>& cells) {
-    std::sort(cells.begin(), cells.end());
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-}
-
-struct Found {
-    CellsByLevel cells;
-    double narrowest = std::numeric_limits<double>::infinity();
-    Vec3 place;
-};
-
 // Looks at the gaps beside some triangles, one after the other.
 class GapSearch {
   public:
     GapSearch(const SizeField& field, const SurfaceIndex& index, int count, double smallest)
-        : field_(field), index_(index), count_(count), smallest_(smallest),
-          reach_(count * std::max(field.lattice.base.x, std::max(field.lattice.base.y, field.lattice.base.z))) {}
+        : field_(field), index_(index), count_(count), smallest_(smallest) {}
 
     void look(const Piece& piece) {
         normal_ = index_.normal(piece.of);
         if (normal_ == Vec3{}) return;
         const Vec3 h = field_.lattice.cellSize(field_.target(index_.surface(), piece.of));
         spacing_ = norm(Vec3{h.x * normal_.x, h.y * normal_.y, h.z * normal_.z});
+        // A wall's own cell and the buffer beside it are of one size: where these alone are enough only closer walls matter.
+        const Vec3& base = field_.lattice.base;
+        reach_ = count_ * (count_ <= 1 + field_.bufferCells ? spacing_ : std::max(base.x, std::max(base.y, base.z)));
         sample(piece.corners);
     }
-    Found take() {
-        for (std::vector<Index3>& cells : found_.cells) sortUnique(cells);
-        return std::move(found_);
-    }
+    std::vector<Gap> take() { return std::move(found_); }
 
   private:
     void sample(const Triangle& t);
     double lookAcross(const Vec3& p, const Vec3& direction);
-    void mark(const Vec3& p, const Vec3& q, double size);
 
     const SizeField& field_;
     const SurfaceIndex& index_;
     int count_;
-    double smallest_, reach_; // m
+    double smallest_; // m
     Vec3 normal_;
-    double spacing_ = 0; // m, of the cells that the triangle meets, along its normal
-    Found found_;
-    std::array<std::size_t, mostLevels> mergeAt_ = [] {
-        std::array<std::size_t, mostLevels> first{};
-        first.fill(1 << 16);
-        return first;
-    }(); // per level: so many cells are worth a look for repeated ones
+    double spacing_ = 0, reach_ = 0; // m, of the cells that the triangle meets, along its normal; of the rays
+    std::vector<Gap> found_;
 };
 
 // Halved along the longest edge until it is no larger than what is wanted at its centre, in needles too.
@@ -102,9 +85,10 @@ void GapSearch::sample(const Triangle& t) {
     for (const Triangle& half : halvesOf(t, longest.first)) sample(half);
 }
 
-// The size wanted in the gap on one side; marks the cells that the ray runs through.
+// The size wanted in the gap on one side.
 double GapSearch::lookAcross(const Vec3& p, const Vec3& direction) {
     const double none = std::numeric_limits<double>::infinity();
+    if (reach_ <= smallest_) return none;
     const Vec3 from = p + direction * smallest_;
     const SegmentHit hit = index_.firstHit(from, p + direction * reach_);
     if (!hit) return none;
@@ -113,28 +97,9 @@ double GapSearch::lookAcross(const Vec3& p, const Vec3& direction) {
     const Vec3 opposite = from + direction * (hit.t * (reach_ - smallest_));
     const double width = cosine * norm(opposite - p); // to the plane of the opposite wall
     if (width < smallest_) return none;
-    const double asked = width / count_, size = std::max(asked, smallest_);
-    if (asked < smallest_ && width < found_.narrowest) found_.narrowest = width, found_.place = (p + opposite) * 0.5;
-    mark(p, opposite, size);
+    const double size = std::max(width / count_, smallest_);
+    found_.push_back({p, opposite, static_cast<float>(width), levelFor(field_.lattice, sameSize(size))});
     return size;
-}
-
-void GapSearch::mark(const Vec3& p, const Vec3& q, double size) {
-    const LevelTriple level = levelFor(field_.lattice, sameSize(size));
-    const Lattice& lattice = field_.lattice;
-    const Box domain = lattice.domain();
-    const auto steps = static_cast<int>(std::ceil(2 * norm(q - p) / lattice.h(level)));
-    std::vector<Index3>& cells = found_.cells[level.x];
-    for (int i = 0; i <= steps; ++i) {
-        const Vec3 at = p + (q - p) * (static_cast<double>(i) / steps);
-        if (!domain.contains(at)) continue;
-        const Index3 cell = lattice.cellAt(level, at);
-        if (cells.empty() || cells.back() != cell) cells.push_back(cell);
-    }
-    if (cells.size() > mergeAt_[level.x]) {
-        sortUnique(cells);
-        mergeAt_[level.x] = 2 * cells.size() + 4096;
-    }
 }
 
 // Large triangles in pieces, so that threads can share them.
@@ -165,38 +130,55 @@ std::vector<Piece> piecesOf(const Surface& s, const SizeField& field) {
     return pieces;
 }
 
-// What every chunk found, together and without repetition.
-GapCells joined(std::vector<Found>& parts) {
-    GapCells gaps;
-    for (std::size_t l = 0; l < mostLevels; ++l) {
-        std::vector<Index3> all;
-        for (Found& part : parts) {
-            all.insert(all.end(), part.cells[l].begin(), part.cells[l].end());
-            std::vector<Index3>().swap(part.cells[l]);
-        }
-        tbb::parallel_sort(all);
-        all.erase(std::unique(all.begin(), all.end()), all.end());
-        if (!all.empty()) gaps.levels.push_back({allAxes(static_cast<int>(l)), std::move(all)});
+// Calls f(cell) for the cells of the gap's level that its ray runs through.
+template <class F>
+void forEachAlong(const Gap& gap, const Lattice& lattice, const F& f) {
+    const auto steps = static_cast<int>(std::ceil(2 * norm(gap.to - gap.from) / lattice.h(gap.level)));
+    const Box domain = lattice.domain();
+    for (int i = 0; i <= steps; ++i) {
+        const Vec3 at = gap.from + (gap.to - gap.from) * (static_cast<double>(i) / steps);
+        if (domain.contains(at)) f(lattice.cellAt(gap.level, at));
     }
-    for (const Found& part : parts) { // the first among equals, in the order of the triangles
-        const bool narrower = gaps.narrowest == 0 || part.narrowest < gaps.narrowest;
-        if (std::isfinite(part.narrowest) && narrower) gaps.narrowest = part.narrowest, gaps.place = part.place;
-    }
-    return gaps;
 }
 
 } // namespace
 
-GapCells findGaps(const SizeField& field, const SurfaceIndex& index, int count, double smallest) {
+std::vector<Gap> findGaps(const SizeField& field, const SurfaceIndex& index, int count, double smallest) {
     constexpr std::size_t chunk = 256;
     const std::vector<Piece> pieces = piecesOf(index.surface(), field);
-    std::vector<Found> parts((pieces.size() + chunk - 1) / chunk);
+    std::vector<std::vector<Gap>> parts((pieces.size() + chunk - 1) / chunk);
     parallelChunks(pieces.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
         GapSearch search(field, index, count, smallest);
         for (std::size_t i = begin; i < end; ++i) search.look(pieces[i]);
         parts[c] = search.take();
     });
-    return joined(parts);
+    std::vector<Gap> gaps;
+    for (const std::vector<Gap>& part : parts) gaps.insert(gaps.end(), part.begin(), part.end());
+    return gaps;
+}
+
+std::vector<LevelCells> cellsAlong(const std::vector<Gap>& gaps, const Lattice& lattice) {
+    constexpr std::size_t chunk = 4096;
+    using CellsByLevel = std::array<std::vector<Index3>, mostLevels>;
+    std::vector<CellsByLevel> parts((gaps.size() + chunk - 1) / chunk);
+    parallelChunks(gaps.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+        for (std::size_t i = begin; i < end; ++i) {
+            forEachAlong(gaps[i], lattice, [&](const Index3& cell) { parts[c][static_cast<std::size_t>(gaps[i].level.finest())].push_back(cell); });
+        }
+        for (std::vector<Index3>& cells : parts[c]) sortUnique(cells);
+    });
+    std::vector<LevelCells> levels;
+    for (std::size_t l = 0; l < mostLevels; ++l) {
+        std::vector<Index3> all;
+        for (CellsByLevel& part : parts) {
+            all.insert(all.end(), part[l].begin(), part[l].end());
+            std::vector<Index3>().swap(part[l]);
+        }
+        tbb::parallel_sort(all);
+        all.erase(std::unique(all.begin(), all.end()), all.end());
+        if (!all.empty()) levels.push_back({allAxes(static_cast<int>(l)), std::move(all)});
+    }
+    return levels;
 }
 
 } // namespace i2b
