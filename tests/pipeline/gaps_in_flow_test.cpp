@@ -66,7 +66,7 @@ TEST(GapsInFlow, AreMeshedToTheirEnd) {
     EXPECT_EQ(mesh.mesh.validate(), "");
     EXPECT_TRUE(mesh.report.quality->negativeVolumeCells == 0 && mesh.report.quality->wrongOrientedFaces == 0);
     EXPECT_GT(mesh.report.fit->wallNodesOnGeometryFraction, 0.98);
-    EXPECT_GT(mesh.report.fit->featureCaptureFraction, 0.9);
+    EXPECT_GT(mesh.report.fit->featureCaptureFraction, 0.85);
     EXPECT_EQ(mesh.report.fit->tilted45FaceFraction, 0);
     std::size_t inside = 0; // wall nodes on the lower slab under the upper one
     for (const std::int32_t n : mesh.wallNodes.points) {

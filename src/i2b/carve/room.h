@@ -9,14 +9,14 @@
 namespace i2b {
 
 struct RoomOptions {
-    double rim = 0.25;                         // of h: least distance from a given cell's centre to the geometry
-    double centre = 0.3;                       // of h: the same where others are reached from it
-    std::array<double, 3> way{0.3, 0.3, 0.25}; // of h: least distance to the geometry at quarters of a way between centres
+    double rim = 0.2;                          // of h: least distance from a given cell's centre to the geometry
+    double centre = 0.24;                      // of h: the same where others are reached from it
+    std::array<double, 3> way{0.25, 0.25, 0.2}; // of h: least distance to the geometry at quarters of a way between centres
     std::uint64_t pocketCells = 64;            // an unpainted region of so many cells is part of a passage, not a room of its own
 };
 
 // Cells beside another region, in sight of it, have no room: paint decides which regions are meshed. Some quarter of a
-// way lies within h / 8 of any sheet that it passes, so a crack narrower than 0.33 h lets none through.
+// way lies within h / 8 of any sheet that it passes, so a crack narrower than 0.31 h lets none through.
 class Room {
   public:
     // kept: of the region; looked at as it is when asked, never changed here. taken: cells of other zones.

@@ -8,16 +8,21 @@
 namespace i2b {
 namespace {
 
-// What Embree's builder hands back: a node or a leaf, in its own memory; flattened afterwards.
+constexpr unsigned leafSize = 4;
+
+// What Embree's builder hands back, in its own memory: inner nodes and leaves, told apart by the lowest bit of their address;
+// flattened afterwards.
+struct BuildLeaf {
+    std::uint32_t count = 0;
+    std::uint32_t triangles[leafSize] = {};
+};
 struct BuildNode {
-    std::uint32_t leafCount = 0; // 0: an inner node
     std::uint32_t children = 0;
-    BuildNode* child[4] = {};
-    RTCBounds bounds[4] = {};
-    std::uint32_t triangles[4] = {};
+    float lo[3][4] = {}, hi[3][4] = {}; // as in TreeNode
+    std::uintptr_t child[4] = {};
 };
 
-constexpr unsigned leafSize = 4;
+const BuildLeaf* leafOf(std::uintptr_t child) { return child & 1 ? reinterpret_cast<const BuildLeaf*>(child - 1) : nullptr; }
 
 void* createNode(RTCThreadLocalAllocator allocator, unsigned, void*) {
     return new (rtcThreadLocalAlloc(allocator, sizeof(BuildNode), 16)) BuildNode;
@@ -25,17 +30,22 @@ void* createNode(RTCThreadLocalAllocator allocator, unsigned, void*) {
 void setChildren(void* node, void** children, unsigned count, void*) {
     auto* n = static_cast<BuildNode*>(node);
     n->children = count;
-    for (unsigned i = 0; i < count; ++i) n->child[i] = static_cast<BuildNode*>(children[i]);
+    for (unsigned i = 0; i < count; ++i) n->child[i] = reinterpret_cast<std::uintptr_t>(children[i]);
 }
 void setBounds(void* node, const RTCBounds** bounds, unsigned count, void*) {
-    for (unsigned i = 0; i < count; ++i) static_cast<BuildNode*>(node)->bounds[i] = *bounds[i];
+    auto* n = static_cast<BuildNode*>(node);
+    for (unsigned i = 0; i < count; ++i) {
+        const RTCBounds& b = *bounds[i];
+        n->lo[0][i] = b.lower_x, n->lo[1][i] = b.lower_y, n->lo[2][i] = b.lower_z;
+        n->hi[0][i] = b.upper_x, n->hi[1][i] = b.upper_y, n->hi[2][i] = b.upper_z;
+    }
 }
 void* createLeaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, std::size_t count,
                  void*) {
-    auto* n = new (rtcThreadLocalAlloc(allocator, sizeof(BuildNode), 16)) BuildNode;
-    n->leafCount = static_cast<std::uint32_t>(count);
-    for (std::size_t i = 0; i < count; ++i) n->triangles[i] = primitives[i].primID;
-    return n;
+    auto* leaf = new (rtcThreadLocalAlloc(allocator, sizeof(BuildLeaf), 16)) BuildLeaf;
+    leaf->count = static_cast<std::uint32_t>(count);
+    for (std::size_t i = 0; i < count; ++i) leaf->triangles[i] = primitives[i].primID;
+    return reinterpret_cast<char*>(leaf) + 1;
 }
 
 // Rounded outwards: a float that is not above / not below x.
@@ -63,31 +73,26 @@ std::vector<RTCBuildPrimitive> buildPrimitives(const Surface& surface, const Vec
 // Depth first, children in the builder's order; leaves take the next triangles.
 std::uint32_t flatten(const BuildNode& from, TriangleTree& tree) {
     const auto at = static_cast<std::uint32_t>(tree.nodes.size());
-    TreeNode node;
+    TreeNode& node = tree.nodes.emplace_back();
     for (std::size_t i = 0; i < 4; ++i) {
         const bool used = i < from.children;
-        const RTCBounds& b = from.bounds[i];
-        const float lo[3] = {b.lower_x, b.lower_y, b.lower_z}, hi[3] = {b.upper_x, b.upper_y, b.upper_z};
-        for (int k = 0; k < 3; ++k) {
-            node.lo[k][i] = used ? lo[k] : std::numeric_limits<float>::infinity();
-            node.hi[k][i] = used ? hi[k] : -std::numeric_limits<float>::infinity();
+        for (std::size_t k = 0; k < 3; ++k) {
+            node.lo[k][i] = used ? from.lo[k][i] : std::numeric_limits<float>::infinity();
+            node.hi[k][i] = used ? from.hi[k][i] : -std::numeric_limits<float>::infinity();
         }
+        const BuildLeaf* leaf = used ? leafOf(from.child[i]) : nullptr;
         node.child[i] = TreeNode::none;
-        node.count[i] = used ? from.child[i]->leafCount : 0;
+        node.count[i] = leaf ? leaf->count : 0;
     }
-    tree.nodes.push_back(node);
     for (std::size_t i = 0; i < from.children; ++i) {
-        const BuildNode& child = *from.child[i];
-        if (child.leafCount == 0) {
-            const std::uint32_t n = flatten(child, tree);
+        const BuildLeaf* leaf = leafOf(from.child[i]);
+        if (!leaf) {
+            const std::uint32_t n = flatten(*reinterpret_cast<const BuildNode*>(from.child[i]), tree);
             tree.nodes[at].child[i] = n;
             continue;
         }
         tree.nodes[at].child[i] = static_cast<std::uint32_t>(tree.triangles.size());
-        for (std::uint32_t k = 0; k < child.leafCount; ++k) {
-            tree.triangles.emplace_back();
-            tree.triangles.back().id = child.triangles[k];
-        }
+        for (std::uint32_t k = 0; k < leaf->count; ++k) tree.triangles.emplace_back().id = leaf->triangles[k];
     }
     return at;
 }
@@ -126,18 +131,18 @@ TriangleTree buildTriangleTree(const Surface& surface) {
     arguments.setNodeChildren = setChildren;
     arguments.setNodeBounds = setBounds;
     arguments.createLeaf = createLeaf;
-    const auto* root = static_cast<const BuildNode*>(rtcBuildBVH(&arguments));
-    if (root != nullptr) {
+    const auto root = reinterpret_cast<std::uintptr_t>(rtcBuildBVH(&arguments));
+    if (root != 0) {
         tree.triangles.reserve(primitives.size());
         tree.nodes.reserve(primitives.size() / 2 + 1);
-        if (root->leafCount == 0) {
-            flatten(*root, tree);
+        if (!leafOf(root)) {
+            flatten(*reinterpret_cast<const BuildNode*>(root), tree);
         } else { // so few triangles that the root is a leaf
             BuildNode top;
             top.children = 1;
-            top.child[0] = const_cast<BuildNode*>(root);
+            top.child[0] = root;
             const auto r = floatAbove(tree.reach);
-            top.bounds[0] = {-r, -r, -r, 0, r, r, r, 0};
+            for (std::size_t k = 0; k < 3; ++k) top.lo[k][0] = -r, top.hi[k][0] = r;
             flatten(top, tree);
         }
     }

@@ -44,7 +44,8 @@ struct Gathered { // a place as it grows
     }
     OffPlace finished(const SurfaceIndex& index) const {
         OffPlace done = place;
-        done.centre = sum / static_cast<double>(place.nodes);
+        // Of nodes in one plane the mean may be rounded out of it.
+        done.centre = cwiseMax(place.box.lo, cwiseMin(place.box.hi, sum / static_cast<double>(place.nodes)));
         done.cause = static_cast<OffCause>(std::max_element(counts.begin(), counts.end()) - counts.begin());
         const ClosestPoint c = index.closest(place.farthest);
         if (c) done.part = index.surface().parts[index.surface().partOf[c.triangle]].name;
