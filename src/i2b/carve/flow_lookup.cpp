@@ -1,20 +1,16 @@
 #include "i2b/carve/flow_lookup.h"
 #include "i2b/grid/mask_ops.h"
-#include <algorithm>
+#include "i2b/grid/neighbours.h"
 
 namespace i2b {
 namespace {
 
-// Level of the leaf cell that holds a place, and the cell's box.
+// Level of the leaf cell that holds a place.
 std::size_t levelAt(const CellGrid& grid, const Vec3& place) {
     for (std::size_t k = grid.levels.size(); k-- > 0;) { // places asked for lie beside walls, where cells are fine
         if (grid.levels[k].cells->isValueOn(toCoord(grid.lattice.cellAt(grid.levels[k].level, place)))) return k;
     }
     return grid.levels.size();
-}
-
-bool mayTouch(const LevelTriple& a, const LevelTriple& b) {
-    return std::abs(a.x - b.x) <= 1 && std::abs(a.y - b.y) <= 1 && std::abs(a.z - b.z) <= 1;
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 #include "i2b/grid/build.h"
 #include "i2b/core/checksum.h"
 #include "i2b/grid/mask_ops.h"
+#include "i2b/grid/neighbours.h"
 #include "i2b/grid/octree.h"
 #include "i2b/grid/resample.h"
 #include "i2b/grid/splits.h"
@@ -69,10 +70,6 @@ std::uint64_t CellGrid::checksum() const {
 
 namespace {
 
-bool farApart(const LevelTriple& a, const LevelTriple& b) {
-    return std::abs(a.x - b.x) > 1 || std::abs(a.y - b.y) > 1 || std::abs(a.z - b.z) > 1;
-}
-
 // True if a cell of one level touches a cell of the other, be it in a corner.
 bool touch(const Lattice& lattice, const CellLevel& a, const CellLevel& b) {
     const LevelTriple low = coarserOf(a.level, b.level), fine = finerOf(a.level, b.level);
@@ -100,7 +97,7 @@ std::string CellGrid::validate() const {
             if (sharesVolume(*cells, level, *levels[m].cells, levels[m].level)) {
                 return fmt::format("levels {} and {} overlap", nameOf(level), nameOf(levels[m].level));
             }
-            if (farApart(level, levels[m].level) && touch(lattice, levels[m], levels[k])) {
+            if (!mayTouch(level, levels[m].level) && touch(lattice, levels[m], levels[k])) {
                 return fmt::format("a cell of level {} touches one of level {}", nameOf(level), nameOf(levels[m].level));
             }
         }

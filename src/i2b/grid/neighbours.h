@@ -4,13 +4,17 @@
 
 namespace i2b {
 
+// May cells of the two levels share a face, an edge or a corner? (2:1 on each axis)
+inline bool mayTouch(const LevelTriple& a, const LevelTriple& b) {
+    return std::abs(a.x - b.x) <= 1 && std::abs(a.y - b.y) <= 1 && std::abs(a.z - b.z) <= 1;
+}
+
 // By level: the other levels whose cells may touch its own (at most one step away on each axis), in order.
 inline std::vector<std::vector<std::size_t>> touchingLevels(const CellGrid& grid) {
     std::vector<std::vector<std::size_t>> touching(grid.levels.size());
     for (std::size_t k = 0; k < grid.levels.size(); ++k) {
         for (std::size_t m = 0; m < grid.levels.size(); ++m) {
-            const LevelTriple &a = grid.levels[k].level, &b = grid.levels[m].level;
-            if (m != k && std::abs(a.x - b.x) <= 1 && std::abs(a.y - b.y) <= 1 && std::abs(a.z - b.z) <= 1) touching[k].push_back(m);
+            if (m != k && mayTouch(grid.levels[k].level, grid.levels[m].level)) touching[k].push_back(m);
         }
     }
     return touching;

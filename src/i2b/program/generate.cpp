@@ -46,14 +46,17 @@ Regions regionsOf(const Surface& surface, const SizeField& field, const CellGrid
 
 // Which gaps the flow comes to shows where all of them have cells small enough to enter: a grid that is painted and
 // carved for that alone.
-void addGapsInFlow(SizeField& field, const Surface& surface, const SurfaceIndex& index, const Options& options) {
+void addGapsInFlow(SizeField& field, const Surface& surface, const SurfaceIndex& index, const Options& options, const Context& context) {
     const std::vector<Gap> gaps = findGaps(field, index, options.size);
     if (gaps.empty()) return;
     SizeField everywhere = field;
     addGaps(everywhere, gaps, options.size);
+    refuseTooLarge(surface, everywhere, 0, true);
     CutCells cut;
     const CellGrid grid = gridOf(surface, everywhere, cut);
+    context.checkCancelled();
     const KeptCells kept = carve(grid, cut, regionsOf(surface, everywhere, grid, cut, options.domain), index, options.fit);
+    context.checkCancelled();
     const FlowLookup flow(grid, kept, index);
     std::vector<std::uint8_t> reached(gaps.size());
     parallelFor(gaps.size(), [&](std::size_t i) { reached[i] = flow.reaches(gaps[i].middle()); });
@@ -116,7 +119,7 @@ std::unique_ptr<GridResult> generateGrid(const Options& options, Context& contex
     if (options.size.curvature > 0 || options.size.gapCells > 0) {
         Stage timed(context, "automatic sizes");
         if (options.size.curvature > 0) addCurvature(r.field, r.surface, options.size, options.geometry.featureAngle);
-        if (options.size.gapCells > 0) addGapsInFlow(r.field, r.surface, *r.index, options);
+        if (options.size.gapCells > 0) addGapsInFlow(r.field, r.surface, *r.index, options, context);
         timed.items = r.surface.triangles.size();
         refuseTooLarge(r.surface, r.field, layerCells, road != Road::mesh);
     }
