@@ -1,30 +1,20 @@
 // Proves: gaps get smaller cells where the flow comes to them, those that it enters only with cells as small too, and the room
 // inside thin solids does not; the mesh is valid, on the geometry, and the same on any number of threads.
-#include "i2b/grid/mask_ops.h"
+#include "grid/cell_at.h"
 #include "i2b/program/generate.h"
+#include "pipeline/stages_run.h"
 #include "pipeline/temporary_stl.h"
-#include "sizing/soups.h"
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 namespace i2b::test {
 namespace {
 
-void addBox(Surface& s, const Vec3& lo, const Vec3& hi, std::int32_t part) {
-    const auto at = [&](int x, int y, int z) { return Vec3{x ? hi.x : lo.x, y ? hi.y : lo.y, z ? hi.z : lo.z}; };
-    addQuad(s, at(0, 0, 0), at(0, 1, 0), at(1, 1, 0), at(1, 0, 0), part);
-    addQuad(s, at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1), part);
-    addQuad(s, at(0, 0, 0), at(1, 0, 0), at(1, 0, 1), at(0, 0, 1), part);
-    addQuad(s, at(0, 1, 0), at(0, 1, 1), at(1, 1, 1), at(1, 1, 0), part);
-    addQuad(s, at(0, 0, 0), at(0, 0, 1), at(0, 1, 1), at(0, 1, 0), part);
-    addQuad(s, at(1, 0, 0), at(1, 1, 0), at(1, 1, 1), at(1, 0, 1), part);
-}
-
 // Two slabs 0.13 m thick, one above the other for part of their length.
 Surface slabs(double gap) {
     Surface s;
-    addBox(s, {0.013, 0.021, 0.007}, {3.013, 1.021, 0.137}, 0);
-    addBox(s, {2.013, 0.021, 0.137 + gap}, {5.013, 1.021, 0.267 + gap}, 1);
+    addPart(s, samples::box({0.013, 0.021, 0.007}, {3.013, 1.021, 0.137}), "lower");
+    addPart(s, samples::box({2.013, 0.021, 0.137 + gap}, {5.013, 1.021, 0.267 + gap}), "upper");
     return s;
 }
 
@@ -34,13 +24,6 @@ Options optionsOf(const TemporaryStl& file, int gapCells) {
     options.size.surface = 0.1, options.size.max = 0.8, options.size.gapCells = gapCells;
     options.domain.box = Box{{-2, -2, -2}, {7.6, 2.8, 2}};
     return options;
-}
-
-double cellAt(const CellGrid& grid, const Vec3& p) {
-    for (const CellLevel& level : grid.levels) {
-        if (level.cells->isValueOn(toCoord(grid.lattice.cellAt(level.level, p)))) return grid.lattice.h(level.level);
-    }
-    return 0;
 }
 
 TEST(GapsInFlow, AreRefinedAndThinSolidsAreNot) {

@@ -2,7 +2,6 @@
 #include "i2b/geometry/rims.h"
 #include "i2b/carve/carve.h"
 #include "i2b/front/replace_faces.h"
-#include "i2b/samples/builder.h"
 #include <numbers>
 #include <random>
 
@@ -13,16 +12,6 @@ const Vec3 half{1, 0.8, 0.6};           // m, of the boxes
 const Vec3 plateHalf{0.65, 0.45, 0.2};  // m, of plateInTop()
 constexpr double plateTurn = 0.13;      // radians
 constexpr double borderX0 = 0.03, borderX1 = 0.31; // m, of flushHalves() at the low and the high end in y
-
-void addPart(Surface& soup, const samples::Mesh& mesh, const char* name) {
-    const auto first = static_cast<std::uint32_t>(soup.points.size());
-    soup.points.insert(soup.points.end(), mesh.points.begin(), mesh.points.end());
-    for (const auto& t : mesh.triangles) {
-        soup.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-        soup.partOf.push_back(static_cast<std::int32_t>(soup.parts.size()));
-    }
-    soup.parts.push_back({name, "", mesh.triangles.size()});
-}
 
 // Core points that several vertices of the front share.
 std::vector<bool> sharedPoints(const Front& front) {
@@ -64,6 +53,16 @@ bool hasArea(const Front& front, const std::vector<std::int32_t>& polygon) {
 }
 
 } // namespace
+
+void addPart(Surface& soup, const samples::Mesh& mesh, const char* name) {
+    const auto first = static_cast<std::uint32_t>(soup.points.size());
+    soup.points.insert(soup.points.end(), mesh.points.begin(), mesh.points.end());
+    for (const auto& t : mesh.triangles) {
+        soup.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+        soup.partOf.push_back(static_cast<std::int32_t>(soup.parts.size()));
+    }
+    soup.parts.push_back({name, "", mesh.triangles.size()});
+}
 
 Options stagesOptions() {
     Options options;

@@ -3,6 +3,7 @@
 #include "carve/kept_checks.h"
 #include "i2b/assemble/assemble.h"
 #include "i2b/fit/fit.h"
+#include "i2b/samples/builder.h"
 #include <memory>
 
 namespace i2b::test {
@@ -10,6 +11,8 @@ namespace i2b::test {
 // External flow around a soup of about 2 m at the origin, in a box of 4.8 m, cells of 0.1 m at the wall.
 inline constexpr double stagesSize = 0.1;
 Options stagesOptions();
+
+void addPart(Surface& soup, const samples::Mesh& mesh, const char* name);
 
 // A box of 2 x 1.6 x 1.2 m about the origin, turned by odd angles.
 Surface turnedBox();

@@ -1,9 +1,9 @@
 // Proves: cells along every ray between opposite walls are so small that the number asked for fits, wherever the gap is
 // wider than the smallest cell; parts, orientation, repeated sheets and threads do not matter; and nothing is asked for
 // where walls stand alone or at a right angle.
+#include "grid/cell_at.h"
 #include "i2b/grid/build.h"
 #include "i2b/grid/cut.h"
-#include "i2b/grid/mask_ops.h"
 #include "i2b/sizing/automatic.h"
 #include "sizing/soups.h"
 #include <gmock/gmock.h>
@@ -29,13 +29,6 @@ Meshed mesh(const Surface& soup, int gapCells, double min = 0.01) {
     const std::vector<CellLevel> at = cutAtTargetLevels(soup, m.field);
     m.grid = buildCellGrid(m.field, wantedCells(m.field, at));
     return m;
-}
-
-double cellAt(const CellGrid& grid, const Vec3& p) {
-    for (const CellLevel& level : grid.levels) {
-        if (level.cells->isValueOn(toCoord(grid.lattice.cellAt(level.level, p)))) return grid.lattice.h(level.level);
-    }
-    return 0;
 }
 
 Surface plates(double gap, std::int32_t secondPart = 0) {
