@@ -73,7 +73,7 @@ TEST_P(LowStep, FootIsCaptured) {
         const ToMesh run(plateInTop(height * stagesSize), stagesOptions());
         std::array<Vec3, 4> top = plateFoot();
         for (Vec3& p : top) p.z += height * stagesSize;
-        const double bar = height == GetParam() ? 0.78 : 0.7;
+        const double bar = height == GetParam() ? 0.8 : 0.7;
         EXPECT_GT(captured(run.front, plateFoot()), bar);
         EXPECT_GT(folded(run.front, top), bar);
         expectSound(run);

@@ -151,13 +151,14 @@ Between lineOver(const SurfaceIndex& index, const FeatureIndex& features, const 
     return {line, SnapKind::line};
 }
 
-Between borderBetween(const SurfaceIndex& index, const Foot& a, const Foot& b, double h) {
+Between borderBetween(const SurfaceIndex& index, const Foot& a, const Foot& b, const Vec3& fluid, double h) {
     const auto isNear = [&](const Foot& foot, std::uint32_t part) {
         return bool(index.closest(foot.point, 0.05 * h, [&](std::uint32_t t) { return static_cast<std::uint32_t>(index.surface().partOf[t]) == part; }));
     };
     Between border;
     double off = 0;
     if (isNear(a, b.part) || isNear(b, a.part) || !partChange(index, a, b.point, off, border.line.point)) return border;
+    if (!isSeen(index, fluid, border.line.point, h)) return border; // between surfaces that end inside another
     if (off > halfway * h && std::abs(dot(normalized(a.normal + b.normal), b.point - a.point)) > flush * h) return border;
     // The border's direction from a second place on it, a little to the side.
     const Vec3 across = normalized(cross(a.normal, b.point - a.point)) * (0.25 * h);

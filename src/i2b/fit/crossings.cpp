@@ -49,7 +49,7 @@ Between Finder::lineOn(std::size_t p, std::size_t q) const {
     const Foot &a = marks.feet[p], &b = marks.feet[q];
     const double h = std::max(band.h[p], band.h[q]);
     if (turns(a, b)) return lineBetween(index, features, a, b, frontOf(p), h);
-    if (a.found && b.found && a.part != b.part) return borderBetween(index, a, b, h);
+    if (a.found && b.found && a.part != b.part) return borderBetween(index, a, b, frontOf(p), h);
     return {};
 }
 
@@ -60,7 +60,7 @@ Between Finder::lineBeside(std::size_t held, std::size_t other) const {
     const Vec3 fluid = (frontOf(held) + frontOf(other)) * 0.5, edge = x[other] - x[held];
     const Foot foot = !marks.onLine[other] ? marks.feet[other] : footAt(index, x[held] + edge * beforeEnd, fluid, h);
     if (!foot.found) return {};
-    for (const double share : {0.5, 0.25}) {
+    for (const double share : {0.5, 0.25, 0.125}) {
         const Vec3 way = x[held] + edge * share;
         Foot passed = footAt(index, way, fluid, bridged * h); // most edges lie on the geometry
         const bool bridges = !passed.found;
@@ -70,7 +70,7 @@ Between Finder::lineBeside(std::size_t held, std::size_t other) const {
         if (turns(passed, foot)) {
             if (bridges) between = lineUnder(index, features, foot, passed, fluid, h);
         } else if (passed.part != foot.part) {
-            between = borderBetween(index, passed, foot, h);
+            between = borderBetween(index, passed, foot, fluid, h);
         }
         if (between.line.found) return between;
     }
@@ -165,7 +165,12 @@ EdgeCrossing Finder::on(std::int32_t edge) const {
     }
     // Beside another line, that one may be nearer to the edge.
     if (between.kind == SnapKind::line) c.wall = features.closestLine(c.beside ? c.wall : atNearest(), length).point;
-    if (!(c.t > nearEnd && c.t < 1 - nearEnd)) return c;
+    if (!(c.t > 0 && c.t < 1)) return c;
+    const auto isFrom = [&](std::size_t n) { return norm(c.wall - x[n]) > nearHeld * band.h[n]; };
+    const double t = std::clamp(c.t, nearEnd, 1 - nearEnd);
+    c.underEnd = t != c.t;
+    if (c.underEnd && !(c.beside && isFrom(p) && isFrom(q))) return c; // else the foot of a step whose upper edge the end stands on
+    c.t = t;
     c.tangent = between.line.tangent;
     if (between.kind != SnapKind::line) {
         const ClosestPoint on = index.closest(c.wall, farOff * length);

@@ -212,6 +212,7 @@ std::size_t snapToFeatures(const Band& band, const Front& front, const SurfaceIn
             crossing = crossingOf(band, index, features, x, meetingOf(index, features, feet[a], feet[b], fluid, h), p, q, otherReach);
             if (crossing.node < 0) crossing = crossingOf(band, index, features, x, between, p, q);
         } else if (feet[a].found && feet[b].found) {
+            const Vec3& fluid = x[static_cast<std::size_t>(band.frontNode[a])];
             const double h = std::max(band.h[a], band.h[b]);
             const ClosestPoint near = index.closeEnough((x[a] + x[b]) * 0.5, steps * h, flat * h); // most edges lie on what they stand on
             if (!near) {
@@ -220,9 +221,9 @@ std::size_t snapToFeatures(const Band& band, const Front& front, const SurfaceIn
                 if (ends[0].node >= 0 || ends[1].node >= 0) return;
             }
             if (near.distance > flat * h)
-                crossings[2 * e] = crossingOf(band, index, features, x, lineOver(index, features, feet[a].point, feet[b].point, x[static_cast<std::size_t>(band.frontNode[a])], h), p, q);
+                crossings[2 * e] = crossingOf(band, index, features, x, lineOver(index, features, feet[a].point, feet[b].point, fluid, h), p, q);
             if (crossings[2 * e].node >= 0 || feet[a].part == feet[b].part) return;
-            crossings[2 * e] = crossingOf(band, index, features, x, borderBetween(index, feet[a], feet[b], std::max(band.h[a], band.h[b])), p, q);
+            crossings[2 * e] = crossingOf(band, index, features, x, borderBetween(index, feet[a], feet[b], fluid, h), p, q);
         }
     });
     std::erase_if(crossings, [](const Crossing& c) { return c.node < 0; });

@@ -16,7 +16,7 @@ constexpr double onGeometry = 0.03;  // of h: so near to the geometry the middle
 constexpr double nearer = 0.8;       // share of its distance that the pieces of a face may keep where bends are cut
 const double alongLine = std::cos(20 * 3.14159265358979323846 / 180);
 constexpr double worstCorner = 0.06; // scaled Jacobian that a piece of a prism must have,
-constexpr double worstAtBend = 0.15; // and where no line asks for it
+constexpr double worstGood = 0.15;   // and where no line asks for it, or one right under an end of an edge
 constexpr std::size_t mostVertices = 8; // of a front face
 
 struct Place { // a vertex of a face that may be cut
@@ -236,8 +236,10 @@ Cuts Inserter::cutsOf(std::size_t face) const {
     Cuts cuts;
     divide(ring, cuts);
     const bool touched = cuts.pieces.size() > 1 || std::any_of(ring.begin(), ring.end(), [](const Place& p) { return p.vertex < 0; });
-    const bool bends = std::any_of(ring.begin(), ring.end(), [&](const Place& p) { return p.crossing >= 0 && crossings_[std::size_t(p.crossing)].kind == SnapKind::none; });
-    const double worst = bends ? worstAtBend : worstCorner;
+    const bool mustBeGood = std::any_of(ring.begin(), ring.end(), [&](const Place& p) {
+        return p.crossing >= 0 && (crossings_[std::size_t(p.crossing)].kind == SnapKind::none || crossings_[std::size_t(p.crossing)].underEnd);
+    });
+    const double worst = mustBeGood ? worstGood : worstCorner;
     cuts.valid = !touched || std::all_of(cuts.pieces.begin(), cuts.pieces.end(), [&](const Ring& piece) { return isValid(piece, worst); });
     if (cuts.valid && cuts.pieces.size() > 1 && std::any_of(ring.begin(), ring.end(), [&](const Place& p) { return isOnBend(p); })) cuts.valid = isNearer(ring, cuts.pieces);
     return cuts;
