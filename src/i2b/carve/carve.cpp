@@ -102,7 +102,7 @@ Carved carveRegion(const CellGrid& grid, const CutCells& cut, const Regions& reg
     }
     for (Mask::Ptr& mask : result.cells) pruneEmptyLeaves(*mask);
     result.islands += dropIslands(result.cells, grid);
-    if (std::all_of(result.cells.begin(), result.cells.end(), [](const Mask::Ptr& m) { return m->empty(); })) {
+    if (std::all_of(result.cells.begin(), result.cells.end(), [](const Mask::Ptr& m) { return countOf(*m) == 0; })) {
         throw Error(ErrorKind::input, fmt::format("nothing is left of region '{}'", region.name),
                     fmt::format("near ({:g} {:g} {:g})", region.seed.x, region.seed.y, region.seed.z),
                     "it is narrower than two cells everywhere: give a smaller --size");
