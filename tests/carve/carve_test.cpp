@@ -157,5 +157,28 @@ TEST(Carve, RefusesWhatIsTooNarrow) {
     EXPECT_THROW(Painted{c}, Error);
 }
 
+// Around one cell and a little more: painted, but too close to the walls to be kept. That is refused, never an empty mesh.
+TEST(Carve, RefusesWhatHasNoCellLeft) {
+    for (const double around : {0.001, 0.003, 0.006}) {
+        RandomCase c = randomCase(0);
+        c.soup = Surface{};
+        c.soup.parts = {{"box", "", 14}};
+        const double lo = 0.2 - around, hi = 0.3 + around;
+        addBlock(c.soup, {{lo, -lo - 0.5, lo}, {hi, hi, hi}});
+        c.options.size = {};
+        c.options.size.surface = c.options.size.max = 0.1;
+        c.options.domain.flow = Flow::internal;
+        c.options.domain.box = Box{{-1, -1, -1}, {1, 1, 1}};
+        const Painted p(c);
+        EXPECT_GT(p.regions.table.size(), 1u);
+        try {
+            EXPECT_GT(carve(p.grid, p.cut, p.regions, *p.index, c.options.fit).cellCount(), 0u) << around;
+        } catch (const Error& e) {
+            EXPECT_EQ(e.kind(), ErrorKind::input);
+            EXPECT_NE(e.problem().find("nothing is left"), std::string::npos) << e.problem();
+        }
+    }
+}
+
 } // namespace
 } // namespace i2b::test

@@ -234,7 +234,15 @@ Band buildBand(const LatticeMesh& mesh, const Front& front, int rings, const Wan
     band.behind.assign(band.fronts, 0);
     band.fansOf = rowsOf(band.fronts, 0, band.walls,
                          [&](std::size_t v, const auto& put) { put(static_cast<std::size_t>(band.frontNode[v]) - band.walls); });
-    parallelFor(band.fronts, [&](std::size_t i) { band.inside[i] = front.inside[static_cast<std::size_t>(band.fansOf[i].back())]; });
+    band.away.resize(band.fronts);
+    parallelFor(band.fronts, [&](std::size_t i) {
+        const auto v = static_cast<std::size_t>(band.fansOf[i].back());
+        band.inside[i] = band.away[i] = front.inside[v];
+        if (band.fansOf[i].size() > 1) return;
+        const std::array<std::int8_t, 3>& wall = front.direction[v];
+        const Vec3& s = front.size[v];
+        band.away[i] = front.front[v] - Vec3{wall[0] * s.x, wall[1] * s.y, wall[2] * s.z} * 0.5;
+    });
 
     std::vector<BandPieces> pieces;
     for (int l = 0; l < mesh.levels(); ++l) {

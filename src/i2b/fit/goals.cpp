@@ -156,6 +156,7 @@ std::vector<Vec3> startPositions(Band& band, const SurfaceIndex& index) {
     std::vector<Vec3> goal = band.start;
     parallelFor(band.fronts, [&](std::size_t i) {
         const std::size_t n = band.walls + i;
+        if (!(band.away[i] == band.inside[i]) && index.firstHit(band.away[i], band.inside[i])) band.inside[i] = band.away[i];
         const SegmentHit hit = index.firstHit(band.inside[i], band.start[n]);
         if (!hit || hit.t <= 0) return;
         band.behind[i] = 1;

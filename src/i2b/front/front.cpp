@@ -54,25 +54,16 @@ void sizesPerAxis(Front& front, const LatticeMesh& mesh) {
     }
 }
 
-// From a vertex to the middle of those octants of a fan's component that lie straight away from its wall, in edges of the cells
-// around it: at a convex edge the middle of all of them may be in the solid. Where several sheets share the front's vertex: of all.
-Vec3 awayFromWall(const VertexPattern& pattern, std::size_t fan) {
-    const std::uint8_t component = pattern.fanComponent[fan];
-    const auto begin = pattern.fanComponent.begin();
-    const bool isShared = std::count(begin, begin + pattern.fans, component) > 1;
-    const std::array<std::int8_t, 3>& wall = pattern.direction[fan];
+// From a vertex to the middle of the octants of one component, in edges of the cells around it.
+Vec3 towardsComponent(const VertexPattern& pattern, std::uint8_t component) {
     Vec3 sum;
-    int n = 0, least = 4;
+    double n = 0;
     for (int o = 0; o < 8; ++o) {
         if (pattern.component[static_cast<std::size_t>(o)] != component) continue;
-        const std::array<int, 3> to{o & 1 ? 1 : -1, o & 2 ? 1 : -1, o & 4 ? 1 : -1};
-        const int along = isShared ? 0 : to[0] * wall[0] + to[1] * wall[1] + to[2] * wall[2];
-        if (along > least) continue;
-        if (along < least) sum = {}, n = 0, least = along;
-        sum += Vec3{double(to[0]), double(to[1]), double(to[2])} * 0.5;
-        ++n;
+        sum += {o & 1 ? 0.5 : -0.5, o & 2 ? 0.5 : -0.5, o & 4 ? 0.5 : -0.5};
+        n += 1;
     }
-    return n > 0 ? sum / double(n) : sum;
+    return n > 0 ? sum / n : sum;
 }
 
 void addVertices(Front& front, const LatticeMesh& mesh, double thickness) {
@@ -86,7 +77,7 @@ void addVertices(Front& front, const LatticeMesh& mesh, double thickness) {
                 const std::size_t i = static_cast<std::size_t>(p.firstFan) + f;
                 const std::uint8_t component = pattern.fanComponent[f];
                 front.front[i] = mesh.lattice().corner(l, v);
-                front.inside[i] = awayFromWall(pattern, f);
+                front.inside[i] = towardsComponent(pattern, component);
                 front.corePoint[i] = component == 0 ? p.point : p.firstExtra + component - 1;
                 front.h[i] = mesh.lattice().h(l);
                 front.size[i] = mesh.lattice().cellSize(l);

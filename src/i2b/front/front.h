@@ -25,7 +25,7 @@ struct Front {
     std::vector<std::int32_t> corePoint;           // number of that point in the LatticeMesh; two fans may share it
     std::vector<double> h;                         // m, smallest edge of the cells around
     std::vector<Vec3> size;                        // m, the same along each axis
-    std::vector<Vec3> inside;                      // m, amid the kept cells over it: on the flow's side of all geometry near
+    std::vector<Vec3> inside;                      // m, amid the kept cells around it: on the flow's side of all geometry near
     std::vector<std::array<std::int8_t, 3>> direction; // sum of the distinct axis directions of its faces
     std::vector<std::uint8_t> outside;             // bit 2 * axis (+ 1): lies on the low (high) side of the domain box
     // Per face:
