@@ -11,6 +11,7 @@
 #include "i2b/grid/cut.h"
 #include "i2b/paint/paint.h"
 #include "i2b/paint/touched_parts.h"
+#include "i2b/program/mesh_limits.h"
 #include "i2b/program/run_stage.h"
 #include "i2b/program/walls.h"
 #include "i2b/quality/last_resort.h"
@@ -154,10 +155,13 @@ MeshResult generate(const Options& options, Context& context) {
     notes.insert(notes.end(), features.notes.begin(), features.notes.end());
     const WallPlans plans = plansOf(options.layers, c.surface.parts);
     notes.insert(notes.end(), plans.notes.begin(), plans.notes.end());
-    Walls walls = makeWalls({c, *lattice, features, plans, options.fit, options.quality}, out.mesh, context);
+    const DictionaryLimits limits = meshLimits(options.quality, c.field.minSize, plans.plans);
+    if (limits.pyramidVolume != options.quality.pyramidVolume)
+        notes.push_back(fmt::format("the limit of min-pyramid-volume, {:g} m3, is for larger cells than these: {:.2g} m3 is taken", options.quality.pyramidVolume, limits.pyramidVolume));
+    Walls walls = makeWalls({c, *lattice, features, plans, options.fit, limits}, out.mesh, context);
     const std::int32_t thinFrom = walls.laid.stack.areFlat() ? static_cast<std::int32_t>(lattice->cellCount()) : out.mesh.cells;
     const LastResort changed = stage(
-        context, "last resort", [&] { return changePoorPlaces(out.mesh, walls.repaired.unmended, options.quality, thinFrom); },
+        context, "last resort", [&] { return changePoorPlaces(out.mesh, walls.repaired.unmended, limits, thinFrom); },
         [](const LastResort& l) { return l.changes.merged + l.changes.divided; });
     out.report = reportOf(c, options, context);
     out.report.fitCutShort = walls.fitted.cutShort;
@@ -171,7 +175,7 @@ MeshResult generate(const Options& options, Context& context) {
         if (patch.type == "wall") out.report.wallFaces += patch.count;
     walls.front = {}, walls.laid = {}; // from here on the mesh speaks for itself
     lattice.reset();
-    judge(out, features, walls.fitted, walls.repaired, options.quality, context);
+    judge(out, features, walls.fitted, walls.repaired, limits, context);
     return out;
 }
 
