@@ -3,6 +3,7 @@
 #include "i2b/geometry/feature_corners.h"
 #include "i2b/geometry/named_features.h"
 #include <algorithm>
+#include <array>
 #include <optional>
 
 namespace i2b {
@@ -10,6 +11,7 @@ namespace {
 
 constexpr double wedge = 0.5;       // cosine of half its angle
 constexpr std::size_t mostLooks = 8; // along an edge
+constexpr std::array<double, 3> nearToFar{0.03, 0.2, 1}; // of the gap
 
 struct Section { // of a triangle and the plane across the edge, from its middle; m
     Vec3 a, b;
@@ -51,34 +53,39 @@ class Look {
   public:
     Look(const SurfaceIndex& index, double gap, double touch) : index_(index), gap_(gap), touch_(touch) {}
 
-    // Nothing continues the sheet at m on an edge along unit e.
+    // Nothing continues the sheet at m on an edge along unit e. What does is most often near: that is looked at first.
     bool endsFreely(const Vec3& m, const Vec3& e) const {
-        const std::vector<Section> sections = sectionsAt(m, e);
-        Vec3 inwards; // along the sheet: of the triangle that ends at m
-        for (const Section& s : sections)
-            for (const auto& [end, other] : {std::pair{s.a, s.b}, std::pair{s.b, s.a}})
-                if (norm(end) <= touch_ && norm2(other) > norm2(inwards)) inwards = other;
-        if (norm(inwards) <= touch_) return false;
-        inwards = normalized(inwards);
+        const Vec3 inwards = inwardsAt(m, e);
+        if (inwards == Vec3{}) return false;
         // The wedge is convex: what has both ends in it lies in it.
         const auto inWedge = [&](const Vec3& p) { return norm(p) <= touch_ || dot(p, inwards) >= wedge * norm(p); };
-        return std::all_of(sections.begin(), sections.end(),
-                           [&](const Section& s) { return inWedge(s.a) && inWedge(s.b); });
+        const auto continues = [&](std::uint32_t t) {
+            const std::optional<Section> s = sectionAt(t, m, e);
+            return s && !(inWedge(s->a) && inWedge(s->b));
+        };
+        return std::none_of(nearToFar.begin(), nearToFar.end(), [&](double share) { return index_.any(around(m, share * gap_), continues); });
     }
 
   private:
-    std::vector<Section> sectionsAt(const Vec3& m, const Vec3& e) const {
-        const Surface& surface = index_.surface();
-        const Vec3 r{gap_, gap_, gap_};
-        std::vector<Section> sections;
-        for (const std::uint32_t t : index_.candidates({m - r, m + r})) {
-            const auto& v = surface.triangles[t];
-            const auto section =
-                sectionOf({surface.points[v[0]] - m, surface.points[v[1]] - m, surface.points[v[2]] - m}, e);
-            if (!section) continue;
-            if (const auto near = clip(*section, gap_)) sections.push_back(*near);
+    static Box around(const Vec3& m, double r) { return {m - Vec3{r, r, r}, m + Vec3{r, r, r}}; }
+
+    // Along the sheet: of the triangle that ends at m. None where there is no such triangle.
+    Vec3 inwardsAt(const Vec3& m, const Vec3& e) const {
+        Vec3 inwards;
+        for (const std::uint32_t t : index_.candidates(around(m, touch_))) {
+            const std::optional<Section> s = sectionAt(t, m, e);
+            if (!s) continue;
+            for (const auto& [end, other] : {std::pair{s->a, s->b}, std::pair{s->b, s->a}})
+                if (norm(end) <= touch_ && norm2(other) > norm2(inwards)) inwards = other;
         }
-        return sections;
+        return norm(inwards) > touch_ ? normalized(inwards) : Vec3{};
+    }
+
+    std::optional<Section> sectionAt(std::uint32_t triangle, const Vec3& m, const Vec3& e) const {
+        const Surface& surface = index_.surface();
+        const auto& v = surface.triangles[triangle];
+        const auto section = sectionOf({surface.points[v[0]] - m, surface.points[v[1]] - m, surface.points[v[2]] - m}, e);
+        return section ? clip(*section, gap_) : std::nullopt;
     }
 
     const SurfaceIndex& index_;
