@@ -69,7 +69,7 @@ void chooseRegions(Regions& regions, const CellGrid& grid, const CutCells&, cons
     if (!best) {
         throw Error(ErrorKind::input,
                     external ? "no region touches the domain box" : "the geometry encloses no region",
-                    fmt::format("{} regions found", regions.table.size()),
+                    fmt::format("{} region{} found", regions.table.size(), regions.table.size() == 1 ? "" : "s"),
                     external ? "give a larger --box" : "the walls may have openings wider than a cell: give a larger --size, or --seed");
     }
     regions.table[static_cast<std::size_t>(best->id)].painted = true;
