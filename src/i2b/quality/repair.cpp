@@ -135,8 +135,12 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, L
     summary.moves += optimiser.pullIn(pullSweeps);
     settle();
     isClean();
+    // Rather a few nodes off the wall than a face that spoils the solution.
+    if (!thin && poor.severe > 0 && poor.severe <= fewFaults) {
+        summary.moves += optimiser.mend(mendSweeps, true);
+        isClean();
+    }
     if (thin && poor.severe > 0 && poor.severe <= fewFaults) {
-        // Rather a few nodes off the wall than a face that spoils the solution.
         stepBack(RetreatFrom::severe);
         summary.moves += optimiser.mend(mendSweeps);
         isClean();
