@@ -49,8 +49,8 @@ struct Band {
     std::vector<std::uint8_t> outside;    // per node: sides of the domain box that it lies in
     std::vector<std::int32_t> corePoint;  // per node from walls on: number in the LatticeMesh
     std::vector<std::int32_t> frontNode;  // per wall node: its front node
-    std::vector<Vec3> inside;             // m, per front node (less walls): amid the kept cells around it, or where geometry
-                                          // parts that from `away`, as at convex edges, there (startPositions())
+    std::vector<Vec3> inside;             // m, per front node (less walls): amid the kept cells around it; where that is behind
+                                          // geometry, too, as at convex edges, at `away` (startPositions())
     std::vector<Vec3> away;               // m, per front node (less walls): the middle of the cells straight off its wall
     std::vector<std::uint8_t> behind;     // per front node (less walls): starts behind geometry, seen from inside
     Csr<std::int32_t> fansOf;             // per front node (less walls): its wall nodes
