@@ -1,5 +1,5 @@
-// Proves: a line that ends inside another part draws no node, nor does a border there; the line in which the two parts meet does; a sharp edge whose sides bend
-// back to each other within a cell is folded on the wall as on the geometry; the rim of a thin sheet is found from its two sides.
+// Proves: a line that ends inside another part draws no node, nor does a border there; the line in which the two parts meet does;
+// a sharp edge whose sides bend back to each other within a cell is folded on the wall as on the geometry; the rim of a thin sheet is found from its two sides.
 #include "i2b/fit/between.h"
 #include "i2b/quality/quality_report.h"
 #include "pipeline/stages_run.h"
