@@ -195,11 +195,14 @@ std::int64_t Optimiser::mend(int sweeps, bool mayLeave) {
 void Optimiser::mendAt(const std::vector<std::int32_t>& cells, int sweeps) {
     leavers_.clear();
     RestingNodes resting;
+    Index before = 0;
     for (int i = 0; i < sweeps; ++i) {
         FaultCount count;
         std::vector<std::int32_t> faulty;
         for (const std::vector<std::int32_t>& found : {faults_.badCells(), faults_.poorCells(count)})
             std::ranges::set_intersection(cells, found, std::back_inserter(faulty));
+        if (i > 0 && static_cast<double>(faulty.size()) > stalled * static_cast<double>(before)) break;
+        before = faulty.size();
         std::vector<Task> tasks = tasksOf(faulty);
         if (tasks.empty() || sweep(tasks, [&](const Task& t, Worker& w) { return mendNode(t, w); }, &resting) == 0) break;
     }
