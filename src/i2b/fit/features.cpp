@@ -25,6 +25,8 @@ constexpr double linesApart = 0.3; // of h: and so do lines beside each other to
 constexpr double nextReach = 0.3;  // of h: so far a node is pulled to a line beside the one that its neighbour is on,
 constexpr double nextSharp = 0.6;  // or to a sharp edge, as the other one of a thin plate
 
+constexpr double besideCorner = 0.5; // of h: a node whose front is turned so far from straight out of a corner counts as farther off
+
 struct Crossing {
     double distance = 0; // in h
     std::int32_t node = -1, other = -1;
@@ -115,12 +117,17 @@ std::size_t snapCorners(const Band& band, const SurfaceIndex& index, const Featu
         const ClosestPoint c = features.closestCorner(x[n], 0.9 * band.h[n]);
         if (!c || !isSeen(index, x[static_cast<std::size_t>(band.frontNode[n])], c.point, band.h[n])) return;
         // Only where the wall around really bends: some neighbour stands on another side.
+        std::array<Foot, 3> sides{feet[n]};
+        std::size_t found = 1;
         for (const BandEdge& e : band.edges[n]) {
             const auto m = static_cast<std::size_t>(e.b);
-            if (m >= band.walls || !turns(feet[n], feet[m])) continue;
-            list[n] = {c.distance / band.h[n], c.triangle, static_cast<std::int32_t>(n), c.point};
-            return;
+            if (m >= band.walls || found == sides.size()) continue;
+            if (std::all_of(sides.begin(), sides.begin() + std::ptrdiff_t(found), [&](const Foot& f) { return turns(f, feet[m]); })) sides[found++] = feet[m];
         }
+        if (found == 1) return;
+        const Vec3 out = normalized(sides[0].normal + sides[1].normal + sides[2].normal);
+        const double turned = 1 - dot(out, normalized(x[static_cast<std::size_t>(band.frontNode[n])] - c.point));
+        list[n] = {c.distance / band.h[n] + besideCorner * turned, c.triangle, static_cast<std::int32_t>(n), c.point};
     });
     std::erase_if(list, [](const Candidate& c) { return c.node < 0; });
     std::stable_sort(list.begin(), list.end(), [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });

@@ -157,14 +157,13 @@ std::vector<Vec3> startPositions(Band& band, const SurfaceIndex& index) {
     parallelFor(band.fronts, [&](std::size_t i) {
         const std::size_t n = band.walls + i;
         SegmentHit hit = index.firstHit(band.inside[i], band.start[n]);
-        double share = 0.5; // of the way out
         if (!hit && !(band.away[i] == band.inside[i]) && index.firstHit(band.away[i], band.inside[i])) { // both are behind
-            band.inside[i] = band.away[i], share = 0.65;
+            band.inside[i] = band.away[i];
             hit = index.firstHit(band.inside[i], band.start[n]);
         }
         if (!hit || hit.t <= 0) return;
         band.behind[i] = 1;
-        goal[n] = band.inside[i] + (band.start[n] - band.inside[i]) * (share * hit.t);
+        goal[n] = band.inside[i] + (band.start[n] - band.inside[i]) * (0.5 * hit.t);
         for (std::int32_t b : band.fansOf[i]) goal[static_cast<std::size_t>(b)] += goal[n] - band.start[n];
     });
     if (std::find(band.behind.begin(), band.behind.end(), 1) == band.behind.end()) return band.start;
