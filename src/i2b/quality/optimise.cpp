@@ -146,9 +146,9 @@ std::int64_t Optimiser::sweep(std::vector<Task>& tasks, const Move& move, Restin
     std::int64_t moves = 0;
     for (const std::vector<std::uint32_t>& group : colour(tasks)) {
         std::vector<std::uint8_t> hasMoved(group.size(), 0);
-        std::vector<Vec3> from;
+        std::vector<NodeMove> from;
         if (tracked_)
-            for (const std::uint32_t t : group) from.push_back(nodes_.place(tasks[t].node));
+            for (const std::uint32_t t : group) from.push_back(whereIs(tasks[t].node, tasks[t].cell));
         parallelChunks(group.size(), 8, [&](Index begin, Index end, Index) {
             Worker worker(*this);
             for (Index i = begin; i < end; ++i) hasMoved[i] = move(tasks[group[i]], worker);
@@ -160,7 +160,7 @@ std::int64_t Optimiser::sweep(std::vector<Task>& tasks, const Move& move, Restin
             if (!hasMoved[i]) continue;
             ++moves;
             if (resting) resting->moves(task.cells);
-            if (tracked_) tracked_->try_emplace(task.node, task.node, task.cell, from[i]);
+            if (tracked_) tracked_->try_emplace(task.node, from[i]);
             changed.insert(changed.end(), task.cells.begin(), task.cells.end());
         }
         if (resting) resting->next();
@@ -256,7 +256,8 @@ void Optimiser::moveTogether(const std::vector<NodeMove>& moves) {
     std::vector<std::int32_t> points, seeds;
     MeshNodes::Moved moved;
     for (const NodeMove& m : moves) {
-        if (tracked_) tracked_->try_emplace(m.node, m.node, m.cell, nodes_.place(m.node));
+        if (tracked_) tracked_->try_emplace(m.node, whereIs(m.node, m.cell));
+        if (float* bend = bendOf(m.node); bend && m.bend >= 0) *bend = m.bend;
         nodes_.moveTo(m.node, m.to);
         seeds.push_back(m.cell);
     }
@@ -274,10 +275,15 @@ void Optimiser::undo() {
     moveTogether(back);
 }
 
-std::vector<Optimiser::NodeMove> Optimiser::trackedPlaces() const {
+Optimiser::NodeMove Optimiser::whereIs(const MeshNode& node, std::int32_t cell) {
+    const float* bend = bendOf(node);
+    return {node, cell, nodes_.place(node), bend ? *bend : -1};
+}
+
+std::vector<Optimiser::NodeMove> Optimiser::trackedPlaces() {
     std::vector<NodeMove> places;
     if (!tracked_) return places;
-    for (const auto& [node, from] : *tracked_) places.push_back({node, from.cell, nodes_.place(node)});
+    for (const auto& [node, from] : *tracked_) places.push_back(whereIs(node, from.cell));
     return places;
 }
 

@@ -45,13 +45,14 @@ class Optimiser {
         MeshNode node;
         std::int32_t cell = -1; // one that uses a point of the node
         Vec3 to;                // m
+        float bend = -1;        // of a wall node's column; less than 0: stays as it is
     };
     void moveTogether(const std::vector<NodeMove>& moves);
     // Remembers from here on which nodes move, until they stay where they are or go back to where they were. comeBack() brings those of
     // the wall as far back as that undoes nothing, but for those of the cells beside some faces.
     void track() { tracked_.emplace(); }
     void comeBack(int sweeps, const std::vector<std::int32_t>& butAt = {});
-    std::vector<NodeMove> trackedPlaces() const; // where those are that have moved
+    std::vector<NodeMove> trackedPlaces(); // where those are that have moved
     void keep() { tracked_.reset(); }
     void undo();
     const MeshNodes& nodes() const { return nodes_; }
@@ -96,6 +97,8 @@ class Optimiser {
     void bringBack(std::vector<Task> tasks, const std::vector<Vec3>& places, int sweeps);
     bool bringBack(const Task& task, const Vec3& to, Worker& worker);
     float* bendOf(const MeshNode& wall);
+    NodeMove whereIs(const MeshNode& node, std::int32_t cell);
+    bool bendForTets(const Task& task, Worker& worker, const Vec3& at, double& least);
     bool fitsAt(const Task& task, Worker& worker, const Vec3& to, const Badness& before);
     bool comeTo(const Task& task, Worker& worker, const Vec3& to, const Badness& before, double shortest);
     bool pullNode(const Task& task, Worker& worker);

@@ -10,7 +10,6 @@ using Index = std::size_t;
 constexpr double settled = 0.01;      // of h: nodes nearer to the geometry are on it
 constexpr double crossing = 0.05;     // of h: so near to its end a way may meet geometry
 constexpr double leastEdge = 0.015;   // of h: no nearer may a node come to another for the wall's sake
-constexpr std::array<float, 5> bends{1, 0.75f, 0.5f, 0.25f, 0}; // tried
 
 } // namespace
 

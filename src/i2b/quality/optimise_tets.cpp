@@ -105,6 +105,22 @@ bool Optimiser::bringBack(const Task& task, const Vec3& to, Worker& worker) {
     return false;
 }
 
+// Bends a wall node's column another way where that lowers the sum of tetrahedra's lack, with the node at a place.
+bool Optimiser::bendForTets(const Task& task, Worker& worker, const Vec3& at, double& least) {
+    float* bend = bendOf(task.node);
+    if (!bend) return false;
+    const float was = *bend;
+    const Badness limits = worker.at(at);
+    float best = was;
+    for (const float value : bends) {
+        *bend = value;
+        const double tets = worker.tetsAt(at, least).sum;
+        if (tets < least * (1 - leastGain) && mayStand(worker.at(at), limits)) least = tets, best = value;
+    }
+    *bend = best;
+    return best != was;
+}
+
 bool Optimiser::mendNodeTets(const Task& task, Worker& worker) {
     const std::uint8_t outside = nodes_.outside(task.node);
     const bool leaves = task.node.kind == MeshNode::wall && mayLeave(task.node);
@@ -167,8 +183,9 @@ bool Optimiser::mendNodeTets(const Task& task, Worker& worker) {
             }
         }
     }
+    const bool isBent = least > 0 && bendForTets(task, worker, best, least);
     worker.end(best);
-    return !(best == from);
+    return isBent || !(best == from);
 }
 
 } // namespace i2b
