@@ -188,7 +188,7 @@ FeatureIndex::Line snapLine(const SurfaceIndex& index, const FeatureIndex& featu
     if (snap.kind == SnapKind::implicitLine) { // straight, which the geometry need not be
         line.point += snap.tangent * dot(x - snap.point, snap.tangent);
         const ClosestPoint c = index.closest(line.point, onGeometry * h);
-        if (c) line.point = c.point;
+        line.point = c ? c.point : snap.point; // which the geometry has confirmed
     }
     return line;
 }
