@@ -43,6 +43,7 @@ Crossing crossingAt(const Band& band, const SurfaceIndex& index, const FeatureIn
     if (between.kind != SnapKind::line || (own.found && !isSeen(index, x[static_cast<std::size_t>(band.frontNode[i])], own.point, band.h[i]))) {
         own = between.line;
         own.point += own.tangent * dot(x[i] - own.point, own.tangent);
+        if (!index.closest(own.point, onGeometry * band.h[i])) own.point = between.line.point;
     }
     const double d = own.found ? norm(own.point - x[i]) / band.h[i] : reach + 1;
     if (d > within) return {};
