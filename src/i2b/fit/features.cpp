@@ -17,7 +17,6 @@ constexpr double flat = 0.03;       // of h: and one whose middle is nearer has 
 constexpr double bridged = 0.04;    // of h: the same beside a line, where an edge bridges a corner
 constexpr double onLine = 0.05;   // of h: so far from a sharp edge the middle of a cut may be
 const double alongLine = std::cos(20 * degree);
-constexpr double onGeometry = 0.3; // of h: so far the geometry may bend away from a line along its tangent
 constexpr double reach = 2.2; // of h: no node is pulled farther to a feature,
 constexpr double otherReach = 0.8; // or to one of another surface, as the top of a step is at its foot, where a nearer one may be
 constexpr double apart = 0.2; // of h: nodes beside each other keep so far apart
@@ -43,7 +42,7 @@ Crossing crossingAt(const Band& band, const SurfaceIndex& index, const FeatureIn
     if (between.kind != SnapKind::line || (own.found && !isSeen(index, x[static_cast<std::size_t>(band.frontNode[i])], own.point, band.h[i]))) {
         own = between.line;
         own.point += own.tangent * dot(x[i] - own.point, own.tangent);
-        if (!index.closest(own.point, onGeometry * band.h[i])) own.point = between.line.point;
+        if (!index.closest(own.point, mostBentAway * band.h[i])) own.point = between.line.point;
     }
     const double d = own.found ? norm(own.point - x[i]) / band.h[i] : reach + 1;
     if (d > within) return {};
@@ -188,7 +187,7 @@ FeatureIndex::Line snapLine(const SurfaceIndex& index, const FeatureIndex& featu
     }
     if (snap.kind == SnapKind::implicitLine) { // straight, which the geometry need not be
         line.point += snap.tangent * dot(x - snap.point, snap.tangent);
-        const ClosestPoint c = index.closest(line.point, onGeometry * h);
+        const ClosestPoint c = index.closest(line.point, mostBentAway * h);
         line.point = c ? c.point : snap.point; // which the geometry has confirmed
     }
     return line;

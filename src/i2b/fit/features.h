@@ -39,6 +39,8 @@ struct Snap { // what a wall node is held to
     Vec3 tangent; // unit, of the line
 };
 
+inline constexpr double mostBentAway = 0.3; // of h: so far the geometry may bend away from an implicit line along its tangent
+
 // Where on its feature a snapped node at x should be, and the feature's direction there. h: m, the size of the cells around.
 FeatureIndex::Line snapLine(const SurfaceIndex& index, const FeatureIndex& features, const Snap& snap, const Vec3& x, double h);
 

@@ -57,7 +57,7 @@ Snap FoldFinder::featureNear(std::size_t n) const {
         const Snap& s = snaps_[m];
         const Vec3 on = s.point + s.tangent * dot(x_[n] - s.point, s.tangent);
         const double d = norm(on - x_[n]);
-        if (d < least) least = d, best = {SnapKind::implicitLine, on, s.tangent};
+        if (d < least && index_.closest(on, mostBentAway * band_.h[n])) least = d, best = {SnapKind::implicitLine, on, s.tangent};
     }
     return best;
 }
