@@ -51,7 +51,7 @@ struct Band {
     std::vector<std::int32_t> frontNode;  // per wall node: its front node
     std::vector<Vec3> inside;             // m, per front node (less walls): amid the kept cells around it; where that is behind
                                           // geometry, too, as at convex edges, at `away` (startPositions())
-    std::vector<Vec3> away;               // m, per front node (less walls): the middle of the cells straight off its wall
+    std::vector<Vec3> away;               // m, per front node (less walls), up to startPositions(): the middle of the cells straight off its wall
     std::vector<std::uint8_t> behind;     // per front node (less walls): starts behind geometry, seen from inside
     Csr<std::int32_t> fansOf;             // per front node (less walls): its wall nodes
     RawVector<Corner> corners;            // the core's, then the prisms'
