@@ -21,14 +21,15 @@ TEST_P(PlainBox, IsMetEverywhere) {
     for (std::size_t v = 0; v < run.front.front.size(); ++v) {
         const Vec3 p = wallPoint(run.front, v);
         off += index.closest(p).distance > 0.01 * stagesSize;
-        int extreme = 0, edge = 0;
+        int extreme = 0, ends = 0, along = 0; // sides of the box that the node is on; where these are two, at which ends of them
         for (int k = 0; k < 3; ++k) {
             const bool isOut = std::abs(p[k]) > half - 1e-3 * stagesSize;
+            if (isOut) ends = 2 * ends + (p[k] > 0);
+            else along = k;
             extreme += isOut;
-            edge += isOut ? (p[k] > 0 ? 1 : 0) << (2 - extreme) : 4 * k;
         }
         atCorners += extreme == 3;
-        if (extreme == 2) atEdges[edge] += 1;
+        if (extreme == 2) atEdges[4 * along + ends] += 1;
     }
     EXPECT_EQ(off, 0u);
     EXPECT_GE(atCorners, 5u); // all eight but at 0.3 h, where rounding decides which cells are kept
