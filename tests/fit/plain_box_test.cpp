@@ -32,7 +32,8 @@ TEST_P(PlainBox, IsMetEverywhere) {
         if (extreme == 2) atEdges[4 * along + ends] += 1;
     }
     EXPECT_EQ(off, 0u);
-    EXPECT_GE(atCorners, 5u); // all eight but at 0.3 h, where rounding decides which cells are kept
+    const bool isOnRim = GetParam() == 6; // 0.3 h: centres lie just at the least distance from the geometry, rounding decides which cells are kept
+    EXPECT_GE(atCorners, isOnRim ? 5u : 8u);
     EXPECT_GE(*std::min_element(std::begin(atEdges), std::end(atEdges)), std::floor(2 * half / stagesSize) - 2); // nodes of a cell each
 }
 

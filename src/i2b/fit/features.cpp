@@ -23,7 +23,6 @@ constexpr double apart = 0.2; // of h: nodes beside each other keep so far apart
 constexpr double linesApart = 0.3; // of h: and so do lines beside each other to have a node each
 constexpr double nextReach = 0.3;  // of h: so far a node is pulled to a line beside the one that its neighbour is on,
 constexpr double nextSharp = 0.6;  // or to a sharp edge, as the other one of a thin plate
-
 constexpr double besideCorner = 0.5; // of h: a node whose front is turned so far from straight out of a corner counts as farther off
 
 struct Crossing {
@@ -121,7 +120,8 @@ std::size_t snapCorners(const Band& band, const SurfaceIndex& index, const Featu
         std::size_t found = 1;
         for (const BandEdge& e : band.edges[n]) {
             const auto m = static_cast<std::size_t>(e.b);
-            if (m >= band.walls || found == sides.size()) continue;
+            if (found == sides.size()) break;
+            if (m >= band.walls) continue;
             if (std::all_of(sides.begin(), sides.begin() + std::ptrdiff_t(found), [&](const Foot& f) { return turns(f, feet[m]); })) sides[found++] = feet[m];
         }
         if (found == 1) return;

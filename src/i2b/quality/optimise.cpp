@@ -275,12 +275,12 @@ void Optimiser::undo() {
     moveTogether(back);
 }
 
-Optimiser::NodeMove Optimiser::whereIs(const MeshNode& node, std::int32_t cell) {
+Optimiser::NodeMove Optimiser::whereIs(const MeshNode& node, std::int32_t cell) const {
     const float* bend = bendOf(node);
     return {node, cell, nodes_.place(node), bend ? *bend : -1};
 }
 
-std::vector<Optimiser::NodeMove> Optimiser::trackedPlaces() {
+std::vector<Optimiser::NodeMove> Optimiser::trackedPlaces() const {
     std::vector<NodeMove> places;
     if (!tracked_) return places;
     for (const auto& [node, from] : *tracked_) places.push_back(whereIs(node, from.cell));

@@ -52,7 +52,7 @@ class Optimiser {
     // the wall as far back as that undoes nothing, but for those of the cells beside some faces.
     void track() { tracked_.emplace(); }
     void comeBack(int sweeps, const std::vector<std::int32_t>& butAt = {});
-    std::vector<NodeMove> trackedPlaces(); // where those are that have moved
+    std::vector<NodeMove> trackedPlaces() const; // where those are that have moved
     void keep() { tracked_.reset(); }
     void undo();
     const MeshNodes& nodes() const { return nodes_; }
@@ -96,8 +96,8 @@ class Optimiser {
     Vec3 wayToOpen(std::int32_t vertex) const;
     void bringBack(std::vector<Task> tasks, const std::vector<Vec3>& places, int sweeps);
     bool bringBack(const Task& task, const Vec3& to, Worker& worker);
-    float* bendOf(const MeshNode& wall);
-    NodeMove whereIs(const MeshNode& node, std::int32_t cell);
+    float* bendOf(const MeshNode& wall) const;
+    NodeMove whereIs(const MeshNode& node, std::int32_t cell) const;
     bool bendForTets(const Task& task, Worker& worker, const Vec3& at, double& least);
     bool fitsAt(const Task& task, Worker& worker, const Vec3& to, const Badness& before);
     bool comeTo(const Task& task, Worker& worker, const Vec3& to, const Badness& before, double shortest);

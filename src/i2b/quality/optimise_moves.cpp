@@ -84,7 +84,7 @@ bool Optimiser::isHeld(const MeshNode& wall) const {
 }
 
 // Of the column of layers over a wall node; none where that is straight whatever it says.
-float* Optimiser::bendOf(const MeshNode& wall) {
+float* Optimiser::bendOf(const MeshNode& wall) const {
     if (wall.kind != MeshNode::wall || stack_.columns.empty()) return nullptr;
     Column& column = stack_.columns[Index(wall.id)];
     return column.normal() == Vec3{} ? nullptr : &column.bend;

@@ -136,13 +136,9 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, L
     settle();
     isClean();
     // Rather a few nodes off the wall than a face that spoils the solution.
-    if (!thin && poor.severe > 0 && poor.severe <= fewFaults) {
-        summary.moves += optimiser.mend(mendSweeps, true);
-        isClean();
-    }
-    if (thin && poor.severe > 0 && poor.severe <= fewFaults) {
-        stepBack(RetreatFrom::severe);
-        summary.moves += optimiser.mend(mendSweeps);
+    if (poor.severe > 0 && poor.severe <= fewFaults) {
+        if (thin) stepBack(RetreatFrom::severe);
+        summary.moves += optimiser.mend(mendSweeps, !thin);
         isClean();
     }
     optimiser.mendTets(tetSweeps);

@@ -15,7 +15,7 @@ constexpr std::array<int, 4> ringsTried{3, 5, 2, 4};             // of cells tha
 constexpr std::size_t mostRings = 2, few = 32;                   // of more than a few faces only so many of these
 constexpr int looks = 7;                                         // that are looked at
 constexpr int most = 64;                                         // faces
-constexpr std::size_t mostMore = 16;                              // that the way back may add, for single moves to mend
+constexpr std::size_t mostMore = 16;                             // that the way back may add, for single moves to mend
 constexpr std::size_t crowded = 40;                              // faults so many around a face are not for this
 constexpr int patience = 5;                                      // places in turn where nothing helps
 constexpr int mendSweeps = 6, tetSweeps = 8, backSweeps = 3;
@@ -163,12 +163,13 @@ std::int64_t stepBackFrom(const std::vector<std::int32_t>& faces, const StepBack
     StepBack back(in, optimiser);
     std::int64_t mended = 0;
     int failed = 0, tried = 0;
+    const Index rings = faces.size() <= few ? ringsTried.size() : mostRings;
     std::set<std::int32_t> hopeless; // cells where it has not helped
     for (Index i = 0; i < faces.size() && tried < most && failed < patience; ++i) {
         if (hopeless.contains(in.mesh.owner[Index(faces[i])])) continue; // the layers of a column have their faults together
         Outcome outcome = Outcome::failed;
         std::vector<std::int32_t> near;
-        for (std::size_t k = 0; k < (faces.size() <= few ? ringsTried.size() : mostRings) && outcome == Outcome::failed; ++k) {
+        for (std::size_t k = 0; k < rings && outcome == Outcome::failed; ++k) {
             Around around = back.aroundAt(faces[i], ringsTried[k]);
             outcome = back.mend(around);
             if (k == 0) near = std::move(around.near);
