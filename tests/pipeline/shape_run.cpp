@@ -7,6 +7,7 @@
 #include <random>
 #include <string_view>
 #include <unistd.h>
+#include <utility>
 
 namespace i2b::test {
 namespace {
@@ -65,6 +66,19 @@ FeatureGraph sharpLines(const Surface& soup, const ShapeGeometry& g) {
     return features;
 }
 
+// Of cracks the line counts that the wall follows best.
+FitReport fitOf(const PolyMesh& mesh, const SurfaceIndex& index, ShapeGeometry g) {
+    FitReport best = measureFit(mesh, index, sharpLines(index.surface(), g));
+    for (std::size_t crack = 0; crack < g.rims.size(); ++crack)
+        for (const auto& rim : g.rims[crack]) {
+            const auto before = std::exchange(g.lines[crack], rim);
+            const FitReport fit = measureFit(mesh, index, sharpLines(index.surface(), g));
+            if (fit.featureCaptureFraction > best.featureCaptureFraction) best = fit;
+            else g.lines[crack] = before;
+        }
+    return best;
+}
+
 double sharpLength(const FeatureGraph& features) {
     double length = 0;
     for (const FeatureEdge& e : features.edges)
@@ -87,6 +101,8 @@ ShapeGeometry posed(const Shape& shape, double h, unsigned seed) {
     ShapeGeometry g = shape.make(h);
     for (Vec3& p : g.soup.points) p = pose(p);
     for (auto& line : g.lines) line = {pose(line[0]), pose(line[1])};
+    for (auto& crack : g.rims)
+        for (auto& line : crack) line = {pose(line[0]), pose(line[1])};
     for (Seed& s : g.seeds) s.place = pose(s.place);
     return g;
 }
@@ -103,9 +119,8 @@ ShapeRun meshShape(const Shape& shape, Side side, double h, unsigned seed) {
         MeshResult result = generate(options, context);
         run.mesh = std::move(result.mesh);
         run.quality = result.report.quality.value();
-        const FeatureGraph lines = sharpLines(result.cartesian->surface, g);
-        run.fit = measureFit(run.mesh, *result.cartesian->index, lines);
-        if (const double length = sharpLength(lines); length > 0)
+        run.fit = fitOf(run.mesh, *result.cartesian->index, g);
+        if (const double length = sharpLength(sharpLines(g.soup, g)); length > 0)
             run.sampled = static_cast<double>(run.fit.featureSamples) * h / 4 / length;
         run.fault = faultOf(run.mesh, run.quality);
     } catch (const Error& e) {

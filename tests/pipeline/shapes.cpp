@@ -181,7 +181,7 @@ ShapeGeometry nestedSpheres(double h) {
 }
 
 // Six faces, each 0.1 cells short of the edges: 0.2 cells of skin are missing along every edge. Its line is the crack's
-// middle, 0.07 cells from either rim and from the edge that the two planes would have: any of the three will do.
+// middle, 0.07 cells from either rim and from the edge that the two planes would have.
 ShapeGeometry crackedCube(double h) {
     const double half = 0.5, shrunk = half - 0.1 * h;
     std::vector<Mesh> faces;
@@ -194,10 +194,12 @@ ShapeGeometry crackedCube(double h) {
             for (const double other : {-1.0, 1.0}) { // cracks along v: each of the twelve comes up once
                 const Vec3 middle = n * ((half + shrunk) / (2 * half)) + u * (other * (half + shrunk) / (2 * shrunk));
                 lines.lines.push_back({middle - v, middle + v});
+                const Vec3 own = n + u * other, others = n * (shrunk / half) + u * (other * half / shrunk);
+                lines.rims.push_back({{{own - v, own + v}, {others - v, others + v}}});
             }
         }
     ShapeGeometry g = geometryOf(faces);
-    g.lines = lines.lines;
+    g.lines = lines.lines, g.rims = lines.rims;
     return g;
 }
 

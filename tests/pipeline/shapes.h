@@ -18,6 +18,9 @@ struct ShapeGeometry {
     // Sharp lines that the soup's triangles do not have as edges, m: where parts cross, the rims of sheets, the
     // middle of cracks.
     std::vector<std::array<Vec3, 2>> lines;
+    // Of cracks the two rims: along any line of the three, but all along the one, an edge of the wall is as good. By crack,
+    // in the order of lines; empty without cracks.
+    std::vector<std::array<std::array<Vec3, 2>, 2>> rims;
     std::vector<Seed> seeds;                // where the flow has to be painted from
 };
 

@@ -10,6 +10,10 @@ const double smallestTurn = std::cos(25 * degree);
 const double confirmedTurn = std::cos(35 * degree);
 constexpr double besideLine = 0.25; // of h: steps off a line along the planes that meet in it
 constexpr double roundedOff = 0.25; // of h: so far from the geometry two planes may meet where an edge is rounded
+constexpr double inCrack = 0.02;    // of h: so far from it a crack is one,
+constexpr double asFar = 1.6;       // and either rim will do that is not so many times farther than the nearest
+const double sameAsPlane = std::cos(8 * degree);
+const Vec3 anyWay{0.267, 0.535, 0.802}; // the same everywhere, along no axis
 constexpr double atMeeting = 0.1;   // of h: so near to where two planes meet a sharp edge is the one there
 constexpr double offPlane = 0.1;    // sine: a line that is farther off the plane of a foot is that of another surface
 constexpr double rimReach = 0.6;    // of h: so far from the feet the rim of a thin sheet is looked for,
@@ -19,6 +23,18 @@ constexpr double flush = 0.15;      // of h: the way over a higher step,
 constexpr double halfway = 0.1;     // of h: where it is so far off the geometry, changes parts halfway between its sides, not at a border
 constexpr double aside = 0.04;      // of h: so far off the way a line is over it,
 constexpr double alongWay = 0.7;    // cosine: if it does not run along it
+
+// The place on the geometry for one where two planes meet: of a rounded edge the middle. Beside a crack both planes end as far
+// away: all along it the rim of the same one, or the mesh would change sides from node to node.
+ClosestPoint onGeometry(const SurfaceIndex& index, const Vec3& meeting, const Vec3& a, const Vec3& b, double h) {
+    const ClosestPoint c = index.closest(meeting, roundedOff * h);
+    if (!c || c.distance < inCrack * h) return c;
+    const auto isOn = [&](std::uint32_t triangle, const Vec3& normal) { return std::abs(dot(index.normal(triangle), normal)) > sameAsPlane; };
+    if (!isOn(c.triangle, a) && !isOn(c.triangle, b)) return c;
+    const Vec3& chosen = std::abs(dot(a, anyWay)) > std::abs(dot(b, anyWay)) ? a : b;
+    const ClosestPoint rim = index.closest(meeting, std::min(asFar * c.distance, roundedOff * h), [&](std::uint32_t t) { return isOn(t, chosen); });
+    return rim ? rim : c;
+}
 
 // The line in which the tangent planes of two feet meet, looked at again on the geometry three times.
 FeatureIndex::Line implicitLine(const SurfaceIndex& index, Foot a, Foot b, const Vec3& fluid, double h) {
@@ -44,8 +60,8 @@ FeatureIndex::Line implicitLine(const SurfaceIndex& index, Foot a, Foot b, const
         if (!na.found || !nb.found) return line;
         a = na, b = nb, middle = p;
     }
-    const ClosestPoint on = index.closest(line.point, roundedOff * h);
-    if (on) line.point = on.point; // of a rounded edge the middle
+    const ClosestPoint on = onGeometry(index, line.point, a.normal, b.normal, h);
+    if (on) line.point = on.point;
     line.found = on && dot(a.normal, b.normal) < confirmedTurn && isSeen(index, fluid, line.point, h);
     return line;
 }
