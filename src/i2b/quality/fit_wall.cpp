@@ -7,6 +7,7 @@ namespace i2b {
 namespace {
 
 constexpr double smallestSize = 1e-100; // m, so that collapsed faces divide by something
+constexpr double strip = 5; // times its median edge is the longest of a face without width, as at the rim of a sheet: its length counts
 
 bool isChosen(const Patch& patch, const std::vector<std::string>& names) {
     return names.empty() ? patch.type == "wall"
@@ -22,7 +23,7 @@ double median(std::vector<double>& values) {
     return *middle;
 }
 
-// Of each face the median of its edges; of each node the median of the faces around it; of each face that of
+// Of each face the median of its edges, of strips the longest; of each node the median of the faces around it; of each face that of
 // its nodes.
 void measureSizes(const PolyMesh& mesh, Wall& wall) {
     struct Around {
@@ -36,10 +37,12 @@ void measureSizes(const PolyMesh& mesh, Wall& wall) {
     parallelFor(wall.faces.size(), [&](std::size_t i) {
         const auto face = mesh.face(wall.faces[i]);
         std::vector<double> lengths;
+        double longest = 0;
         for (std::size_t k = 0; k < face.size(); ++k)
             lengths.push_back(norm(mesh.points[static_cast<std::size_t>(face[(k + 1) % face.size()])] -
                                    mesh.points[static_cast<std::size_t>(face[k])]));
-        const double size = std::max(median(lengths), smallestSize);
+        for (const double length : lengths) longest = std::max(longest, length);
+        const double middle = median(lengths), size = std::max(longest > strip * middle ? longest : middle, smallestSize);
         for (std::size_t k = 0; k < face.size(); ++k) around[start[i] + k] = {face[k], size};
     });
     tbb::parallel_sort(around);
