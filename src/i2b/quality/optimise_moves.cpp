@@ -52,7 +52,7 @@ Vec3 Optimiser::onWall(Hold hold, const MeshNode& node, const Vec3& from, const 
 bool Optimiser::mendNode(const Task& task, Worker& worker) {
     const std::uint8_t outside = nodes_.outside(task.node);
     // Where the wall meets a side of the domain at a sharp angle thin layers are skew: there its nodes may leave it.
-    if (task.node.kind == MeshNode::wall && outside != 0 && !thin_) return false;
+    if (task.node.kind == MeshNode::wall && outside != 0 && !thin_ && !mayLeave(task.node)) return false;
     worker.begin(task);
     const Vec3 from = worker.from;
     const Badness before = worker.at(from);
