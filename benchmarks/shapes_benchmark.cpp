@@ -3,7 +3,8 @@
 //
 //     shapes_benchmark [--poses N] [--sizes H,H,...] [--runs FILE.csv] [--ply FOLDER] [SHAPE[:outside|:inside] ...]
 //
-// --poses 10 by default; --runs writes a line for every run; --ply writes every wall, SHAPE-SIDE-H-POSE.ply.
+// --poses 10 by default; --runs writes a line for every run; --ply writes every wall, SHAPE-SIDE-H-POSE.ply, and what it is of, SHAPE-H-POSE.stl.
+#include "i2b/geometry/write_stl.h"
 #include "i2b/write/ply_write.h"
 #include "pipeline/shape_run.h"
 #include <algorithm>
@@ -118,9 +119,9 @@ Figures measure(const Shape& shape, Side side, const Arguments& a, std::ofstream
             const ShapeRun run = meshShape(shape, side, h, pose);
             figures.add(run);
             record(runs, fmt::format("{}:{}", shape.name, nameOf(side)), h, pose, run);
-            if (!a.ply.empty() && run.mesh.cells > 0)
-                writePly(run.mesh, fmt::format("{}/{}-{}-{}-{}.ply", a.ply, shape.name, nameOf(side), h, pose),
-                         Context());
+            if (a.ply.empty() || run.mesh.cells == 0) continue;
+            writePly(run.mesh, fmt::format("{}/{}-{}-{}-{}.ply", a.ply, shape.name, nameOf(side), h, pose), Context());
+            writeStl(posed(shape, h, pose).soup, fmt::format("{}/{}-{}-{}.stl", a.ply, shape.name, h, pose), StlFormat::binary);
         }
     return figures;
 }

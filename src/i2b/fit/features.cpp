@@ -23,6 +23,8 @@ constexpr double apart = 0.2; // of h: nodes beside each other keep so far apart
 constexpr double linesApart = 0.3; // of h: and so do lines beside each other to have a node each
 constexpr double nextReach = 0.3;  // of h: so far a node is pulled to a line beside the one that its neighbour is on,
 constexpr double nextSharp = 0.6;  // or to a sharp edge, as the other one of a thin plate
+constexpr double cornerReach = 0.9; // of h: no node is pulled farther to a corner, but
+constexpr double tipReach = 1.8;    // so far into a hollow one, at the end of whose faces no cell has room
 constexpr double besideCorner = 0.5; // of h: a node whose front is turned so far from straight out of a corner counts as farther off
 
 struct Crossing {
@@ -113,7 +115,7 @@ std::size_t snapCorners(const Band& band, const SurfaceIndex& index, const Featu
     std::vector<Candidate> list(band.walls, Candidate{0, ~0u, -1, {}});
     parallelFor(band.walls, [&](std::size_t n) {
         if (hangs(band, n) || band.outside[n] != 0) return;
-        const ClosestPoint c = features.closestCorner(x[n], 0.9 * band.h[n]);
+        const ClosestPoint c = features.closestCorner(x[n], tipReach * band.h[n]);
         if (!c || !isSeen(index, x[static_cast<std::size_t>(band.frontNode[n])], c.point, band.h[n])) return;
         // Only where the wall around really bends: some neighbour stands on another side.
         std::array<Foot, 3> sides{feet[n]};
@@ -126,6 +128,8 @@ std::size_t snapCorners(const Band& band, const SurfaceIndex& index, const Featu
         }
         if (found == 1) return;
         const Vec3 out = normalized(sides[0].normal + sides[1].normal + sides[2].normal);
+        const auto isBefore = [&](const Foot& f) { return dot(f.point - c.point, out) > 0; };
+        if (c.distance > cornerReach * band.h[n] && (found < 3 || !std::all_of(sides.begin(), sides.end(), isBefore) || features.isCrowded(c, band.h[n]))) return;
         const double turned = 1 - dot(out, normalized(x[static_cast<std::size_t>(band.frontNode[n])] - c.point));
         list[n] = {c.distance / band.h[n] + besideCorner * turned, c.triangle, static_cast<std::int32_t>(n), c.point};
     });
@@ -177,6 +181,10 @@ FeatureIndex::Line FeatureIndex::closestLine(const Vec3& q, double radius) const
 
 ClosestPoint FeatureIndex::closestCorner(const Vec3& q, double radius) const {
     return cornerIndex_ ? cornerIndex_->closest(q, radius) : ClosestPoint{};
+}
+
+bool FeatureIndex::isCrowded(const ClosestPoint& corner, double radius) const {
+    return bool(cornerIndex_->closest(corner.point, radius, [&](std::uint32_t other) { return other != corner.triangle; }));
 }
 
 FeatureIndex::Line snapLine(const SurfaceIndex& index, const FeatureIndex& features, const Snap& snap, const Vec3& x, double h) {

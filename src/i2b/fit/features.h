@@ -25,6 +25,7 @@ class FeatureIndex {
     };
     Line closestLine(const Vec3& q, double radius) const;
     ClosestPoint closestCorner(const Vec3& q, double radius) const; // triangle: number among the corners
+    bool isCrowded(const ClosestPoint& corner, double radius) const; // is another one within radius of it?
 
   private:
     Surface lines_, corners_; // segments and points as degenerate triangles
