@@ -56,10 +56,8 @@ FeatureIndex::Line implicitLine(const SurfaceIndex& index, Foot a, Foot b, const
             const Vec3 inPlane = d - line.tangent * dot(d, line.tangent) - foot.normal * dot(d, foot.normal);
             return normalized(inPlane) * (besideLine * h);
         };
-        Foot na = footAt(index, p + along(a), fluid, h), nb = footAt(index, p + along(b), fluid, h);
+        const Foot na = footAt(index, p + along(a), fluid, h), nb = footAt(index, p + along(b), fluid, h);
         if (!na.found || !nb.found) return line;
-        if (dot(na.normal, a.normal) < 0) na.normal = -na.normal;
-        if (dot(nb.normal, b.normal) < 0) nb.normal = -nb.normal;
         a = na, b = nb, middle = p;
     }
     const ClosestPoint on = onGeometry(index, line.point, a.normal, b.normal, h);
