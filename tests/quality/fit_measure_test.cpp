@@ -100,6 +100,16 @@ TEST(FitMeasure, shiftedALittle) {
     EXPECT_EQ(r.tiltedFaceFraction, 0);
 }
 
+// Beside the rims of z = 1 a row of faces without width: a node there has two of them and two of the top, and the size of
+// the wall is the length of the strips, not their width. Samples are as many as without them.
+TEST(FitMeasure, stripsCountWithTheirLength) {
+    const auto squeezed = [](Vec3 p) { return p.z > 1 - 1.5 * h && p.z < 1 - 0.5 * h ? Vec3{p.x, p.y, 1 - 0.01 * h} : p; };
+    const FitReport plain = fit(cubeWall([](Vec3 p) { return p; }), box(1)), r = fit(cubeWall(squeezed), box(1));
+    EXPECT_EQ(r.wallNodesOnGeometryFraction, 1);
+    EXPECT_EQ(r.featureCaptureFraction, 1);
+    EXPECT_NEAR(double(r.featureSamples), double(plain.featureSamples), 24);
+}
+
 // Shifted by 0.2 h along x: only the four edges along x are still captured.
 TEST(FitMeasure, shiftedFarther) {
     const FitReport r = fit(cubeWall([](Vec3 p) { return p + Vec3{0.2 * h, 0, 0}; }), box(1));
