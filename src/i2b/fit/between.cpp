@@ -25,7 +25,8 @@ constexpr double aside = 0.04;      // of h: so far off the way a line is over i
 constexpr double alongWay = 0.7;    // cosine: if it does not run along it
 
 // The place on the geometry for one where two planes meet: of a rounded edge the middle. Beside a crack both planes end as far
-// away: all along it the rim of the same one, or the mesh would change sides from node to node.
+// away: all along it the rim of the same one, or the mesh would change sides from node to node. Normals are compared without their
+// sign: from a place beyond the edge a plane is seen from behind.
 ClosestPoint onGeometry(const SurfaceIndex& index, const Vec3& meeting, const Vec3& a, const Vec3& b, double h) {
     const ClosestPoint c = index.closest(meeting, roundedOff * h);
     if (!c || c.distance < inCrack * h) return c;
