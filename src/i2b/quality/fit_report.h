@@ -2,7 +2,8 @@
 //
 // h, the local wall cell size: of a wall node the median size of the wall faces around it, a face's size
 // being the median length of its edges; of a wall face the median of its nodes'. (Of two in the middle the
-// smaller. Of a face without width, as at the rim of a sheet, whose longest edge is over five times that, the longest. Nothing of a lattice is used, so the same measure judges any mesh.)
+// smaller. Of a face without width, as at the rim of a sheet, whose longest edge is over five times that, the longest.
+// Nothing of a lattice is used, so the same measure judges any mesh.)
 //
 // On the geometry: within 0.01 h of it.
 //

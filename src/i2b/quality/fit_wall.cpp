@@ -37,12 +37,11 @@ void measureSizes(const PolyMesh& mesh, Wall& wall) {
     parallelFor(wall.faces.size(), [&](std::size_t i) {
         const auto face = mesh.face(wall.faces[i]);
         std::vector<double> lengths;
-        double longest = 0;
         for (std::size_t k = 0; k < face.size(); ++k)
             lengths.push_back(norm(mesh.points[static_cast<std::size_t>(face[(k + 1) % face.size()])] -
                                    mesh.points[static_cast<std::size_t>(face[k])]));
-        for (const double length : lengths) longest = std::max(longest, length);
-        const double middle = median(lengths), size = std::max(longest > strip * middle ? longest : middle, smallestSize);
+        const double longest = *std::max_element(lengths.begin(), lengths.end()), middle = median(lengths);
+        const double size = std::max(longest > strip * middle ? longest : middle, smallestSize);
         for (std::size_t k = 0; k < face.size(); ++k) around[start[i] + k] = {face[k], size};
     });
     tbb::parallel_sort(around);
