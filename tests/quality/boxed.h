@@ -16,8 +16,8 @@ inline QualityLimits limitsOf(double nonOrthogonality = 37) { // stricter than r
 
 struct Boxed {
     // thin: the layer on the wall counts as thin cells.
-    explicit Boxed(const QualityLimits& limits = limitsOf(), bool thin = false, const Surface& soup = flushHalves())
-        : run(soup, stagesOptions()), cellFaces(buildCellFaces(run.mesh)), thinFrom(run.mesh.cells - (thin ? static_cast<std::int32_t>(run.layers.cells()) : 0)),
+    explicit Boxed(const QualityLimits& limits = limitsOf(), bool thin = false)
+        : run(flushHalves(), stagesOptions()), cellFaces(buildCellFaces(run.mesh)), thinFrom(run.mesh.cells - (thin ? static_cast<std::int32_t>(run.layers.cells()) : 0)),
           faults(run.mesh, cellFaces, limits, thinFrom),
           wishes(run.fitted.snaps.size()),
           optimiser(run.mesh, cellFaces, faults, run.front, run.layers, {*run.painted.index, run.features, run.fitted.snaps, wishes}) {}

@@ -1,7 +1,7 @@
 // Proves: on a box whose wall nodes were put in bad places, mend() makes the poor faces vanish and never raises the worst;
 // mendTets() makes all faces divide into tetrahedra within the limits, mendTetsOffWall() those that cannot on the wall;
 // mendFlatAt() raises the determinants of thin cells at the cost of nothing else; pullIn() brings nodes back onto the geometry; snapWished() brings them to a line that they should be on, or leaves them
-// be; nodes on sides of the domain only move where they may leave the wall; no cell turns bad; the same on any number of threads.
+// be; no cell turns bad; the same on any number of threads.
 #include "i2b/quality/measures.h"
 #include "i2b/quality/mesh_geometry.h"
 #include "i2b/quality/quality_report.h"
@@ -92,28 +92,6 @@ TEST(Optimise, MendMakesPoorFacesVanish) {
     // What was kept up to date is what a fresh look says, and the front is the mesh's.
     EXPECT_TRUE(MeshFaults(b.run.mesh, b.cellFaces, limitsOf()).badCells().empty());
     EXPECT_EQ(assemble({b.run.lattice, b.run.kept, b.run.front, b.run.layers, b.run.painted.soup.parts}).checksum(), b.run.mesh.checksum());
-}
-
-// A wall node on a side of the domain stays where it is, and where nodes may leave the wall for a severe face it does so within that side.
-TEST(Optimise, MendMovesNodesOnSidesWhereTheyMayLeave) {
-    Surface soup = flushHalves();
-    for (Vec3& p : soup.points) p.z -= 2.1; // through the bottom
-    Boxed b(limitsOf(), false, soup);
-    const std::size_t v = b.nodeAt({-0.5, 0.8, -2.4});
-    ASSERT_NE(b.run.front.outside[v], 0);
-    const Vec3 fitted = b.wallOf(v), displaced = fitted + Vec3{1.3 * stagesSize, 0, 0};
-    const std::int64_t before = b.poor();
-    b.put(v, displaced);
-    ASSERT_TRUE(b.faults.badCells().empty());
-    const std::int64_t poor = b.poor();
-    ASSERT_GT(poor, before);
-    b.optimiser.mend(12);
-    EXPECT_EQ(b.wallOf(v), displaced);
-    b.optimiser.mend(12, true);
-    EXPECT_FALSE(b.wallOf(v) == displaced);
-    EXPECT_EQ(b.wallOf(v).z, fitted.z);
-    EXPECT_LT(b.poor(), poor);
-    EXPECT_TRUE(b.faults.badCells().empty());
 }
 
 // Wall nodes beyond the diagonals of their faces: these divide again, and no other measure gets worse.
