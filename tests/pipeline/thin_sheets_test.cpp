@@ -1,8 +1,11 @@
 // Proves, on plates without thickness in random poses: the wall around one is a single piece, tips and all; nodes at its rim do not
-// stop on the way; and no corner draws two nodes, between which a face would collapse.
+// stop on the way; and no corner draws two nodes, between which a face would collapse; and the
+// reports are of what is left where nodes at the rim have become one.
+#include "i2b/program/generate.h"
 #include "pipeline/shapes.h"
 #include "pipeline/shape_run.h"
 #include "pipeline/stages_run.h"
+#include "pipeline/temporary_stl.h"
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <numeric>
@@ -61,6 +64,37 @@ TEST(ThinPlates, FewNodesStopOnTheWay) {
         nodes += run.front.front.size();
     }
     EXPECT_LT(double(far), 0.04 * double(nodes));
+}
+
+// What is said of faces and nodes is of those that are left when pairs of nodes at the rim have become one.
+TEST(ThinPlates, ReportsCountWhatIsLeftAtClosedRims) {
+    const ShapeGeometry g = posed(plateShape(), 0.065, 7);
+    const TemporaryStl file(g.soup);
+    Options options;
+    options.geometry.files = {file.path()};
+    options.size.surface = 0.065, options.size.max = 0.26;
+    options.domain.box = Box{{-1.3, -1.3, -1.3}, {1.3, 1.3, 1.3}};
+    options.domain.flow = Flow::external;
+    options.layers.count = 3;
+    Context context;
+    const MeshResult result = generate(options, context);
+    EXPECT_EQ(result.mesh.validate(), "");
+    EXPECT_EQ(result.report.quality->dictionaryFaces, 0);
+    const auto stage = std::ranges::find_if(result.report.stages, [](const auto& s) { return s.name == "rims"; });
+    ASSERT_NE(stage, result.report.stages.end());
+    EXPECT_GT(stage->items, 5u);
+    std::int64_t walls = 0, reported = 0;
+    for (const Patch& patch : result.mesh.patches) walls += patch.type == "wall" ? patch.count : 0;
+    for (const LayerRow& row : result.report.layers->parts) reported += row.faces;
+    EXPECT_EQ(result.report.wallFaces, walls);
+    EXPECT_EQ(reported, walls);
+    std::vector<std::int32_t> cells;
+    for (const Patch& patch : result.mesh.patches)
+        if (patch.type == "wall") cells.assign(result.mesh.owner.begin() + patch.start, result.mesh.owner.begin() + patch.start + patch.count);
+    std::ranges::sort(cells);
+    cells.erase(std::ranges::unique(cells).begin(), cells.end());
+    EXPECT_EQ(result.walls.wallCell, cells);
+    EXPECT_EQ(result.offCauses.size(), result.wallNodes.points.size());
 }
 
 } // namespace

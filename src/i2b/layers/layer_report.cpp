@@ -100,11 +100,24 @@ void settleCells(WallLayers& walls, const LayerStack& stack, std::int32_t firstL
     });
 }
 
+void dropFaces(WallLayers& walls, const std::vector<std::int32_t>& cells) {
+    if (cells.empty()) return;
+    if (walls.pieces.empty()) walls.pieces.assign(walls.wallCell.size(), 1);
+    std::vector<std::int32_t> left = cells;
+    for (std::size_t f = 0; f < walls.wallCell.size() && !left.empty(); ++f) {
+        const auto [from, to] = std::ranges::equal_range(left, walls.wallCell[f]);
+        const auto dropped = std::min<std::ptrdiff_t>(to - from, walls.pieces[f]);
+        walls.pieces[f] = static_cast<std::uint8_t>(walls.pieces[f] - dropped);
+        left.erase(from, from + dropped);
+    }
+}
+
 void sortByCell(WallLayers& walls) {
     const std::vector<std::int32_t>& cells = walls.wallCell;
-    if (std::ranges::adjacent_find(cells, std::ranges::greater_equal()) == cells.end()) return;
+    if (walls.pieces.empty() && std::ranges::adjacent_find(cells, std::ranges::greater_equal()) == cells.end()) return;
     std::vector<std::size_t> order(cells.size());
     std::iota(order.begin(), order.end(), std::size_t(0));
+    if (!walls.pieces.empty()) std::erase_if(order, [&](std::size_t f) { return walls.pieces[f] == 0; });
     std::ranges::stable_sort(order, {}, [&](std::size_t f) { return cells[f]; });
     const auto [from, to] = std::ranges::unique(order, {}, [&](std::size_t f) { return cells[f]; });
     order.erase(from, to);

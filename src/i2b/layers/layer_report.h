@@ -59,6 +59,8 @@ WallLayers measureLayers(const Front& front, const LayerStack& stack);
 // become cells of the mesh.
 void settleCells(WallLayers& walls, const LayerStack& stack, std::int32_t firstLayerCell, const std::vector<std::int32_t>& cellOf,
                  const std::vector<std::int32_t>& morePieces);
+// Faces of the wall that are gone: cells of the mesh, one for each.
+void dropFaces(WallLayers& walls, const std::vector<std::int32_t>& cells);
 // In the order of cells, each cell once: of several faces at one the first.
 void sortByCell(WallLayers& walls);
 LayerReport summarize(const WallLayers& walls, const Front& front, const std::vector<Part>& parts, int requested);

@@ -14,6 +14,7 @@
 #include "i2b/program/mesh_limits.h"
 #include "i2b/program/run_stage.h"
 #include "i2b/program/walls.h"
+#include "i2b/quality/close_rims.h"
 #include "i2b/quality/last_resort.h"
 #include "i2b/sizing/automatic.h"
 #include "i2b/sizing/estimate.h"
@@ -66,6 +67,18 @@ void addGapsInFlow(SizeField& field, const Surface& surface, const SurfaceIndex&
         if (reached[i]) inFlow.push_back(gaps[i]);
     }
     addGaps(field, inFlow, options.size);
+}
+
+// places: ascending.
+template <class T>
+void dropPlaces(std::vector<T>& values, const std::vector<std::int32_t>& places) {
+    if (values.empty() || places.empty()) return;
+    std::size_t to = 0, next = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (next < places.size() && static_cast<std::size_t>(places[next]) == i) ++next;
+        else values[to++] = values[i];
+    }
+    values.resize(to);
 }
 
 // What the mesh has come to, by itself and beside the geometry.
@@ -163,11 +176,16 @@ MeshResult generate(const Options& options, Context& context) {
     const LastResort changed = stage(
         context, "last resort", [&] { return changePoorPlaces(out.mesh, walls.repaired.unmended, limits, thinFrom); },
         [](const LastResort& l) { return l.changes.merged + l.changes.divided; });
+    const ClosedRims rims = stage(
+        context, "rims", [&] { return closeRims(out.mesh, walls.front, features, *c.index, limits); },
+        [](const ClosedRims& r) { return r.closed + r.moved; });
+    dropPlaces(walls.fitted.offCauses, rims.lostNodes), dropPlaces(walls.repaired.movedWalls, rims.lostNodes);
     out.report = reportOf(c, options, context);
     out.report.fitCutShort = walls.fitted.cutShort;
     out.report.changes = changed.changes;
     out.walls = measureLayers(walls.front, walls.laid.stack);
     settleCells(out.walls, walls.laid.stack, static_cast<std::int32_t>(lattice->cellCount()), changed.cellOf, changed.morePieces);
+    dropFaces(out.walls, rims.lostFaces);
     out.report.layers = summarize(out.walls, walls.front, c.surface.parts, options.layers.count);
     out.walls.askedFirst = {}, out.walls.askedThickness = {}; // the report has them
     sortByCell(out.walls);

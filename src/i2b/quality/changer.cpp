@@ -31,6 +31,7 @@ Verdict judge(const LocalEdits::Surroundings& around, const DictionaryLimits& di
                                      r.lowWeightFaces, r.lowVolumeRatioFaces, r.highAspectRatioCells, r.tetErrors})
         v.counts[n++] = count;
     v.faces = r.dictionaryFaces, v.concave = r.concaveCells;
+    v.nonOrthogonality = r.maxNonOrthogonality, v.skewness = r.maxSkewness;
     return v;
 }
 

@@ -11,6 +11,7 @@ namespace i2b {
 struct Verdict {
     std::array<std::int64_t, dictionaryLimitCount + 9> counts{}; // of all that a check names, but for faces twice there
     std::int64_t faces = 0, concave = 0;                          // faces beyond limits, cells
+    double nonOrthogonality = 0, skewness = 0;                    // degrees; the greatest
 };
 
 // Of the groups in question and their faces: what lies around them stays as it is.

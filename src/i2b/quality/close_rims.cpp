@@ -1,0 +1,322 @@
+#include "i2b/quality/close_rims.h"
+#include "i2b/core/parallel.h"
+#include "i2b/core/sort_unique.h"
+#include "i2b/front/front.h"
+#include "i2b/quality/fit_wall.h"
+#include "i2b/quality/rim_star.h"
+#include <algorithm>
+#include <optional>
+
+namespace i2b {
+namespace {
+
+using Index = std::size_t;
+constexpr int mostRounds = 8;
+constexpr double pairReach = 0.45;  // of h: both of a pair are as near to the rim
+constexpr double alongRim = 0.75;   // cosine: edges of the front that run along the rim are not across it
+constexpr double reach = 0.6;       // of h: nodes nearer to a rim are looked at
+constexpr double off = 0.01;        // of h: those farther off the geometry are in need,
+constexpr double onRim = 0.02;      // and those farther off the rim,
+constexpr double alone = 0.35;      // where no other node on it is so near, in h
+constexpr double nearCorner = 0.45; // of h: a corner of the rim without a node draws one from so far
+constexpr double apart = 0.15;      // of h: two nodes that stay two keep so far apart
+constexpr double across = 0.8;      // cosine: edges along the rim are not for closing
+constexpr double leastGain = 0.02;  // of h
+
+struct Change {
+    RimMove move;
+    std::vector<std::int32_t> star; // cells around, ascending
+};
+
+// The rims of a geometry and the corners on them.
+class Rims {
+  public:
+    explicit Rims(const FeatureGraph& features) {
+        lines_.points = corners_.points = features.points;
+        lines_.parts = corners_.parts = {Part{"rims", "", 0}};
+        std::vector<std::uint8_t> onRims(features.points.size(), 0);
+        for (const FeatureEdge& e : features.edges) {
+            if (!(e.kinds & bitOf(EdgeKind::rim))) continue;
+            lines_.triangles.push_back({e.a, e.b, e.b});
+            lines_.partOf.push_back(0);
+            onRims[e.a] = onRims[e.b] = 1;
+        }
+        for (const std::uint32_t c : features.corners) {
+            if (!onRims[c]) continue;
+            corners_.triangles.push_back({c, c, c});
+            corners_.partOf.push_back(0);
+        }
+        if (lines_.triangles.empty()) return;
+        lineIndex_.emplace(lines_);
+        if (!corners_.triangles.empty()) cornerIndex_.emplace(corners_);
+    }
+    bool empty() const { return lines_.triangles.empty(); }
+    ClosestPoint line(const Vec3& q, double radius) const { return lineIndex_->closest(q, radius); }
+    ClosestPoint corner(const Vec3& q, double radius) const { return cornerIndex_ ? cornerIndex_->closest(q, radius) : ClosestPoint{}; }
+    Vec3 tangent(const ClosestPoint& onLine) const {
+        const auto& t = lines_.triangles[onLine.triangle];
+        return normalized(lines_.points[t[1]] - lines_.points[t[0]]);
+    }
+
+  private:
+    Surface lines_, corners_; // segments and points as triangles without area
+    std::optional<SurfaceIndex> lineIndex_, cornerIndex_;
+};
+
+class RimCloser {
+  public:
+    RimCloser(PolyMesh& mesh, const Front& front, const Wall& wall, const Rims& rims, const SurfaceIndex& index, const DictionaryLimits& limits)
+        : mesh_(mesh), front_(front), wall_(wall), rims_(rims), index_(index), limits_(limits), cellFaces_(buildCellFaces(mesh)), star_(mesh, cellFaces_) {
+        cellAt_.assign(wall.nodes.size(), -1);
+        for (const WallEdge& e : wall.edges)
+            for (const std::int32_t p : {e.a, e.b}) cellAt_[nodePlace(wall, p)] = mesh.owner[Index(wall.faces[Index(e.face)])];
+    }
+    ClosedRims run();
+
+  private:
+    struct Node { // a wall node in need
+        std::int32_t point = -1;
+        double h = 0; // m
+    };
+    const Vec3& at(std::int32_t point) const { return mesh_.points[Index(point)]; }
+    double offGeometry(const Vec3& p, double h) const {
+        const ClosestPoint c = index_.closest(p, h);
+        return c ? c.distance / h : 1;
+    }
+    std::vector<Change> findPairs() const;
+    std::vector<Change> closePairs();
+    bool openWhereWorse(std::vector<Change>& closed);
+    void seekRest(ClosedRims& out);
+    std::vector<std::int32_t> wallNeighbours(std::int32_t point, const std::vector<std::int32_t>& star) const;
+    std::optional<Node> nodeInNeed(Index place) const;
+    Vec3 placeOnRim(std::int32_t point, std::int32_t other, double h, const std::vector<std::int32_t>& around) const;
+    double errorOf(const std::vector<std::int32_t>& star, const RimMove& move, bool isDone, double h) const;
+    std::optional<Change> find(const Node& node) const;
+    std::optional<Change> tryMove(const RimMove& move, double h) const;
+    void write(ClosedRims& out);
+
+    PolyMesh& mesh_;
+    const Front& front_;
+    const Wall& wall_; // its nodes follow each other as the vertices of the front do
+    const Rims& rims_;
+    const SurfaceIndex& index_;
+    const DictionaryLimits& limits_;
+    Rows cellFaces_;
+    RimStar star_;
+    std::vector<std::int32_t> cellAt_; // per wall node, one that uses it
+};
+
+// Of the faces of the wall around a point, its neighbours along their edges.
+std::vector<std::int32_t> RimCloser::wallNeighbours(std::int32_t point, const std::vector<std::int32_t>& star) const {
+    std::vector<std::int32_t> next, loop;
+    for (const std::int32_t f : star_.wallFaces(star)) {
+        star_.loopOf(f, {}, loop);
+        for (Index i = 0; i < loop.size(); ++i) {
+            if (loop[i] != point) continue;
+            next.push_back(loop[(i + 1) % loop.size()]);
+            next.push_back(loop[(i + loop.size() - 1) % loop.size()]);
+        }
+    }
+    sortUnique(next);
+    return next;
+}
+
+std::optional<RimCloser::Node> RimCloser::nodeInNeed(Index place) const {
+    const std::int32_t point = wall_.nodes[place];
+    const double h = wall_.nodeH[place];
+    if (star_.isGone(point)) return {};
+    const ClosestPoint line = rims_.line(at(point), reach * h);
+    if (!line) return {};
+    if (offGeometry(at(point), h) > off) return Node{point, h};
+    if (line.distance <= onRim * h) return {};
+    const std::vector<std::int32_t> next = wallNeighbours(point, star_.cellsAt(point, -1, cellAt_[place]));
+    const bool isAlone = std::ranges::none_of(next, [&](std::int32_t q) { return norm(at(q) - line.point) < alone * h && rims_.line(at(q), onRim * h); });
+    return isAlone ? std::optional(Node{point, h}) : std::nullopt;
+}
+
+// Where on the rim a point, or two, should be: at a corner that is without a node, else where it is nearest.
+Vec3 RimCloser::placeOnRim(std::int32_t point, std::int32_t other, double h, const std::vector<std::int32_t>& around) const {
+    const ClosestPoint own = rims_.line(at(point), 2 * h), others = other >= 0 ? rims_.line(at(other), 2 * h) : ClosestPoint{};
+    const Vec3 to = others && others.distance < own.distance ? others.point : own.point;
+    const ClosestPoint corner = rims_.corner(to, nearCorner * h);
+    const auto isThere = [&](std::int32_t q) { return q != point && q != other && norm(at(q) - corner.point) < onRim * h; };
+    return corner && std::ranges::none_of(around, isThere) ? corner.point : to;
+}
+
+// In h: how far the node or nodes and the middles of the wall's faces around are off, and the nearer node off the rim.
+double RimCloser::errorOf(const std::vector<std::int32_t>& star, const RimMove& move, bool isDone, double h) const {
+    double sum = 0;
+    std::vector<std::int32_t> loop;
+    const auto place = [&](std::int32_t p) { return isDone && p == move.keep ? move.to : at(p); };
+    if (!isDone) {
+        double nearest = reach;
+        for (const std::int32_t p : {move.keep, move.gone}) {
+            if (p < 0) continue;
+            sum += offGeometry(at(p), h);
+            if (const ClosestPoint line = rims_.line(at(p), reach * h)) nearest = std::min(nearest, line.distance / h);
+        }
+        sum += nearest;
+    }
+    for (const std::int32_t f : star_.wallFaces(star)) {
+        star_.loopOf(f, isDone ? move : RimMove{}, loop);
+        if (loop.size() < 3) continue;
+        Vec3 middle;
+        for (const std::int32_t p : loop) middle += place(p);
+        sum += offGeometry(middle / static_cast<double>(loop.size()), h);
+    }
+    return sum;
+}
+
+std::optional<Change> RimCloser::tryMove(const RimMove& move, double h) const {
+    const Index place = nodePlace(wall_, move.keep);
+    Change change{move, star_.cellsAt(move.keep, move.gone, cellAt_[place])};
+    if (errorOf(change.star, move, false, h) - errorOf(change.star, move, true, h) < leastGain) return {};
+    if (move.gone >= 0 && !star_.mayJoin(move, change.star)) return {};
+    if (!star_.isNoWorse(move, change.star, limits_)) return {};
+    return change;
+}
+
+std::optional<Change> RimCloser::find(const Node& node) const {
+    const Index place = nodePlace(wall_, node.point);
+    const std::vector<std::int32_t> star = star_.cellsAt(node.point, -1, cellAt_[place]);
+    std::vector<std::int32_t> next = wallNeighbours(node.point, star);
+    std::ranges::stable_sort(next, {}, [&](std::int32_t q) { return norm2(at(q) - at(node.point)); });
+    const double h = node.h;
+    for (const std::int32_t q : next) {
+        const ClosestPoint line = rims_.line(at(q), reach * h);
+        if (!line) continue;
+        const Vec3 edge = at(q) - at(node.point);
+        if (norm(edge) > apart * h && std::abs(dot(edge, rims_.tangent(line))) > across * norm(edge)) continue;
+        const std::int32_t keep = std::min(q, node.point), gone = std::max(q, node.point);
+        if (auto change = tryMove({keep, gone, placeOnRim(node.point, q, h, next)}, h)) return change;
+    }
+    const Vec3 to = placeOnRim(node.point, -1, h, next);
+    if (std::ranges::any_of(next, [&](std::int32_t q) { return norm(at(q) - to) < apart * h; })) return {};
+    return tryMove({node.point, -1, to}, h);
+}
+
+void RimCloser::write(ClosedRims& out) {
+    for (Index i = 0; i < wall_.nodes.size(); ++i)
+        if (star_.isGone(wall_.nodes[i])) out.lostNodes.push_back(static_cast<std::int32_t>(i));
+    out.lostFaces = star_.rewrite();
+}
+
+// Edges of the front across a rim, each vertex in one at most: those that are most so come first.
+std::vector<Change> RimCloser::findPairs() const {
+    struct Pair {
+        double cost = 0;
+        std::int32_t p = -1, q = -1;
+        Vec3 to;
+    };
+    std::vector<Pair> pairs(front_.mesh.n_edges());
+    parallelFor(pairs.size(), [&](Index e) {
+        const auto he = front_.mesh.halfedge_handle(FrontMesh::EdgeHandle(static_cast<int>(e)), 0);
+        const std::int32_t v = front_.mesh.from_vertex_handle(he).idx(), w = front_.mesh.to_vertex_handle(he).idx();
+        const std::int32_t p = wall_.nodes[Index(v)], q = wall_.nodes[Index(w)];
+        const double h = std::min(wall_.nodeH[Index(v)], wall_.nodeH[Index(w)]);
+        const ClosestPoint a = rims_.line(at(p), pairReach * h);
+        if (!a) return;
+        const ClosestPoint b = rims_.line(at(q), pairReach * h);
+        if (!b) return;
+        const double cosine = std::abs(dot(rims_.tangent(a), normalized(front_.front[Index(w)] - front_.front[Index(v)])));
+        if (cosine > alongRim) return;
+        ClosestPoint to = rims_.line((a.point + b.point) * 0.5, h);
+        for (const std::int32_t end : {p, q})
+            if (const ClosestPoint corner = rims_.corner(at(end), onRim * h)) to = corner; // which a node has reached
+        pairs[e] = {cosine + norm(at(p) - at(q)) / h, std::min(p, q), std::max(p, q), to.point};
+    });
+    std::erase_if(pairs, [](const Pair& p) { return p.p < 0; });
+    std::ranges::stable_sort(pairs, {}, &Pair::cost);
+    std::vector<std::uint8_t> taken(wall_.nodes.size(), 0);
+    std::vector<Change> found;
+    for (const Pair& pair : pairs) {
+        const Index a = nodePlace(wall_, pair.p), b = nodePlace(wall_, pair.q);
+        if (taken[a] || taken[b]) continue;
+        taken[a] = taken[b] = 1;
+        found.push_back({{pair.p, pair.q, pair.to}, star_.cellsAt(pair.p, pair.q, cellAt_[a])});
+    }
+    return found;
+}
+
+// Opens those of the pairs in whose cells something is worse than it was; whether there were any.
+bool RimCloser::openWhereWorse(std::vector<Change>& closed) {
+    std::vector<std::uint8_t> isWorse(closed.size(), 0);
+    parallelFor(closed.size(), [&](Index i) { isWorse[i] = !star_.isNoWorse({}, closed[i].star, limits_); }, 1);
+    std::vector<Change> left;
+    for (Index i = 0; i < closed.size(); ++i) {
+        if (isWorse[i]) star_.takeBack(closed[i].move);
+        else left.push_back(std::move(closed[i]));
+    }
+    const bool any = left.size() < closed.size();
+    closed = std::move(left);
+    return any;
+}
+
+// One pair at a time would leave slivers beside it: all are closed, and those opened that leave something worse.
+std::vector<Change> RimCloser::closePairs() {
+    std::vector<Change> closed;
+    for (Change& pair : findPairs()) {
+        if (!star_.mayJoin(pair.move, pair.star)) continue;
+        star_.apply(pair.move);
+        closed.push_back(std::move(pair));
+    }
+    bool any = true;
+    while (any) {
+        while (openWhereWorse(closed)) {}
+        // What may be joined hangs on what else is.
+        const std::size_t before = closed.size();
+        std::erase_if(closed, [&](const Change& pair) {
+            star_.takeBack(pair.move);
+            if (!star_.mayJoin(pair.move, pair.star)) return true;
+            star_.apply(pair.move);
+            return false;
+        });
+        any = closed.size() < before;
+    }
+    return closed;
+}
+
+// Single pairs and nodes, where that helps.
+void RimCloser::seekRest(ClosedRims& out) {
+    std::vector<std::uint8_t> isNear(wall_.nodes.size(), 0);
+    parallelFor(isNear.size(), [&](Index i) { isNear[i] = bool(rims_.line(at(wall_.nodes[i]), reach * wall_.nodeH[i])); });
+    std::vector<std::uint32_t> places;
+    for (Index i = 0; i < isNear.size(); ++i)
+        if (isNear[i]) places.push_back(static_cast<std::uint32_t>(i));
+    for (int round = 0; round < mostRounds && !places.empty(); ++round) {
+        std::vector<std::optional<Change>> changes(places.size());
+        parallelFor(places.size(), [&](Index i) {
+            if (const auto node = nodeInNeed(places[i])) changes[i] = find(*node);
+        }, 1);
+        std::vector<std::int32_t> touched; // cells that are not as they were when the changes were judged
+        for (const std::optional<Change>& change : changes) {
+            if (!change || std::ranges::any_of(change->star, [&](std::int32_t c) { return std::ranges::binary_search(touched, c); })) continue;
+            const std::vector<std::int32_t> around = star_.withNeighbours(change->star);
+            const auto middle = static_cast<std::ptrdiff_t>(touched.size());
+            touched.insert(touched.end(), around.begin(), around.end());
+            std::inplace_merge(touched.begin(), touched.begin() + middle, touched.end());
+            star_.apply(change->move);
+            ++(change->move.gone >= 0 ? out.closed : out.moved);
+        }
+        if (touched.empty()) break;
+    }
+}
+
+ClosedRims RimCloser::run() {
+    ClosedRims out;
+    out.closed = static_cast<std::int64_t>(closePairs().size());
+    seekRest(out);
+    if (out.closed > 0) write(out);
+    return out;
+}
+
+} // namespace
+
+ClosedRims closeRims(PolyMesh& mesh, const Front& front, const FeatureGraph& features, const SurfaceIndex& index, const DictionaryLimits& limits) {
+    const Rims rims(features);
+    if (rims.empty()) return {};
+    const Wall wall = collectWall(mesh, {});
+    return RimCloser(mesh, front, wall, rims, index, limits).run();
+}
+
+} // namespace i2b
