@@ -30,7 +30,7 @@ RunReport sample() {
     r.quality->maxSkewness = 1.25;
     r.quality->dictionary = {{"maxNonOrtho", 65, true, 0, 0, 0, {}}, {"minDeterminant", 0.001, true, 6, 0, 1, {}}};
     r.quality->dictionaryFaces = 6;
-    r.changes = {2, 3, {{1, 2, 3}}};
+    r.changes = {2, 3, {{1, 2, 3}}, 4};
     r.fit.emplace();
     r.fitCutShort = true;
     r.offGeometry.emplace();
@@ -63,7 +63,7 @@ TEST(ReportWrite, HasTheContractsKeys) {
                                      "max_non_orthogonality", "mean_non_orthogonality", "max_skewness",
                                      "max_aspect_ratio", "min_face_weight", "min_volume_ratio",
                                      "min_determinant", "concave_cells", "faces_beyond_limits", "limits", "changes"));
-    EXPECT_EQ(json["quality"]["changes"].dump(), R"({"merged_cells":2,"divided_faces":3,"places":[[1.0,2.0,3.0]]})");
+    EXPECT_EQ(json["quality"]["changes"].dump(), R"({"merged_cells":2,"divided_faces":3,"joined_rim_nodes":4,"places":[[1.0,2.0,3.0]]})");
     EXPECT_THAT(keys(json["quality"]["limits"]), testing::ElementsAre("maxNonOrtho", "minDeterminant"));
     EXPECT_THAT(keys(json["quality"]["limits"]["minDeterminant"]), testing::ElementsAre("limit", "asked", "faces", "cells", "worst"));
     EXPECT_THAT(keys(json["fit"]), testing::ElementsAre("wall_nodes_on_geometry_fraction",

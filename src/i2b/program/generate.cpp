@@ -183,6 +183,7 @@ MeshResult generate(const Options& options, Context& context) {
     out.report = reportOf(c, options, context);
     out.report.fitCutShort = walls.fitted.cutShort;
     out.report.changes = changed.changes;
+    out.report.changes.joined = rims.closed;
     out.walls = measureLayers(walls.front, walls.laid.stack);
     settleCells(out.walls, walls.laid.stack, static_cast<std::int32_t>(lattice->cellCount()), changed.cellOf, changed.morePieces);
     dropFaces(out.walls, rims.lostFaces);

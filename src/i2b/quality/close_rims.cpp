@@ -124,7 +124,7 @@ std::vector<std::int32_t> RimCloser::wallNeighbours(std::int32_t point, const st
 std::optional<RimCloser::Node> RimCloser::nodeInNeed(Index place) const {
     const std::int32_t point = wall_.nodes[place];
     const double h = wall_.nodeH[place];
-    if (star_.isGone(point)) return {};
+    if (star_.isGone(point) || front_.outside[place] != 0) return {}; // nodes in sides of the domain stay there
     const ClosestPoint line = rims_.line(at(point), reach * h);
     if (!line) return {};
     if (offGeometry(at(point), h) > off) return Node{point, h};

@@ -15,6 +15,7 @@ namespace i2b {
 struct MeshChanges {
     std::int64_t merged = 0, divided = 0; // cells that others have taken in, faces
     std::vector<Vec3> places;             // m, of the faces that were to be mended; as many as reports name
+    std::int64_t joined = 0;              // wall nodes at rims of sheets that are now one with another (close_rims.h)
 };
 
 struct LastResort {

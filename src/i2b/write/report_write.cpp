@@ -51,7 +51,7 @@ Json fitJson(const FitReport& f) {
 Json changesJson(const MeshChanges& changes) {
     Json places = Json::array();
     for (const Vec3& p : changes.places) places.push_back(place(p));
-    return {{"merged_cells", changes.merged}, {"divided_faces", changes.divided}, {"places", places}};
+    return {{"merged_cells", changes.merged}, {"divided_faces", changes.divided}, {"joined_rim_nodes", changes.joined}, {"places", places}};
 }
 
 Json layerRowJson(const LayerRow& row) {
