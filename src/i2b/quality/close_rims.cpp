@@ -1,6 +1,7 @@
 #include "i2b/quality/close_rims.h"
 #include "i2b/core/parallel.h"
 #include "i2b/core/sort_unique.h"
+#include "i2b/fit/features.h"
 #include "i2b/front/front.h"
 #include "i2b/quality/fit_wall.h"
 #include "i2b/quality/rim_star.h"
@@ -28,44 +29,24 @@ struct Change {
     std::vector<std::int32_t> star; // cells around, ascending
 };
 
-// The rims of a geometry and the corners on them.
-class Rims {
-  public:
-    explicit Rims(const FeatureGraph& features) {
-        lines_.points = corners_.points = features.points;
-        lines_.parts = corners_.parts = {Part{"rims", "", 0}};
-        std::vector<std::uint8_t> onRims(features.points.size(), 0);
-        for (const FeatureEdge& e : features.edges) {
-            if (!(e.kinds & bitOf(EdgeKind::rim))) continue;
-            lines_.triangles.push_back({e.a, e.b, e.b});
-            lines_.partOf.push_back(0);
-            onRims[e.a] = onRims[e.b] = 1;
-        }
-        for (const std::uint32_t c : features.corners) {
-            if (!onRims[c]) continue;
-            corners_.triangles.push_back({c, c, c});
-            corners_.partOf.push_back(0);
-        }
-        if (lines_.triangles.empty()) return;
-        lineIndex_.emplace(lines_);
-        if (!corners_.triangles.empty()) cornerIndex_.emplace(corners_);
+// The rims of a geometry and the corners on them, alone.
+FeatureGraph rimsOf(const FeatureGraph& features) {
+    FeatureGraph rims;
+    std::vector<std::uint8_t> onRims(features.points.size(), 0);
+    for (const FeatureEdge& e : features.edges) {
+        if (!(e.kinds & bitOf(EdgeKind::rim))) continue;
+        rims.edges.push_back(e);
+        onRims[e.a] = onRims[e.b] = 1;
     }
-    bool empty() const { return lines_.triangles.empty(); }
-    ClosestPoint line(const Vec3& q, double radius) const { return lineIndex_->closest(q, radius); }
-    ClosestPoint corner(const Vec3& q, double radius) const { return cornerIndex_ ? cornerIndex_->closest(q, radius) : ClosestPoint{}; }
-    Vec3 tangent(const ClosestPoint& onLine) const {
-        const auto& t = lines_.triangles[onLine.triangle];
-        return normalized(lines_.points[t[1]] - lines_.points[t[0]]);
-    }
-
-  private:
-    Surface lines_, corners_; // segments and points as triangles without area
-    std::optional<SurfaceIndex> lineIndex_, cornerIndex_;
-};
+    if (rims.edges.empty()) return rims;
+    rims.points = features.points;
+    std::ranges::copy_if(features.corners, std::back_inserter(rims.corners), [&](std::uint32_t c) { return onRims[c] != 0; });
+    return rims;
+}
 
 class RimCloser {
   public:
-    RimCloser(PolyMesh& mesh, const Front& front, const Wall& wall, const Rims& rims, const SurfaceIndex& index, const DictionaryLimits& limits)
+    RimCloser(PolyMesh& mesh, const Front& front, const Wall& wall, const FeatureIndex& rims, const SurfaceIndex& index, const DictionaryLimits& limits)
         : mesh_(mesh), front_(front), wall_(wall), rims_(rims), index_(index), limits_(limits), cellFaces_(buildCellFaces(mesh)), star_(mesh, cellFaces_) {
         cellAt_.assign(wall.nodes.size(), -1);
         for (const WallEdge& e : wall.edges)
@@ -83,6 +64,10 @@ class RimCloser {
         const ClosestPoint c = index_.closest(p, h);
         return c ? c.distance / h : 1;
     }
+    double offRim(const Vec3& p, double radius) const { // m, or infinite
+        const FeatureIndex::Line line = rims_.closestLine(p, radius);
+        return line.found ? norm(line.point - p) : std::numeric_limits<double>::infinity();
+    }
     std::vector<Change> findPairs() const;
     std::vector<Change> closePairs();
     bool openWhereWorse(std::vector<Change>& closed);
@@ -98,7 +83,7 @@ class RimCloser {
     PolyMesh& mesh_;
     const Front& front_;
     const Wall& wall_; // its nodes follow each other as the vertices of the front do
-    const Rims& rims_;
+    const FeatureIndex& rims_;
     const SurfaceIndex& index_;
     const DictionaryLimits& limits_;
     Rows cellFaces_;
@@ -125,20 +110,20 @@ std::optional<RimCloser::Node> RimCloser::nodeInNeed(Index place) const {
     const std::int32_t point = wall_.nodes[place];
     const double h = wall_.nodeH[place];
     if (star_.isGone(point) || front_.outside[place] != 0) return {}; // nodes in sides of the domain stay there
-    const ClosestPoint line = rims_.line(at(point), reach * h);
-    if (!line) return {};
+    const FeatureIndex::Line line = rims_.closestLine(at(point), reach * h);
+    if (!line.found) return {};
     if (offGeometry(at(point), h) > off) return Node{point, h};
-    if (line.distance <= onRim * h) return {};
+    if (norm(line.point - at(point)) <= onRim * h) return {};
     const std::vector<std::int32_t> next = wallNeighbours(point, star_.cellsAt(point, -1, cellAt_[place]));
-    const bool isAlone = std::ranges::none_of(next, [&](std::int32_t q) { return norm(at(q) - line.point) < alone * h && rims_.line(at(q), onRim * h); });
+    const bool isAlone = std::ranges::none_of(next, [&](std::int32_t q) { return norm(at(q) - line.point) < alone * h && rims_.closestLine(at(q), onRim * h).found; });
     return isAlone ? std::optional(Node{point, h}) : std::nullopt;
 }
 
 // Where on the rim a point, or two, should be: at a corner that is without a node, else where it is nearest.
 Vec3 RimCloser::placeOnRim(std::int32_t point, std::int32_t other, double h, const std::vector<std::int32_t>& around) const {
-    const ClosestPoint own = rims_.line(at(point), 2 * h), others = other >= 0 ? rims_.line(at(other), 2 * h) : ClosestPoint{};
-    const Vec3 to = others && others.distance < own.distance ? others.point : own.point;
-    const ClosestPoint corner = rims_.corner(to, nearCorner * h);
+    const bool others = other >= 0 && offRim(at(other), 2 * h) < offRim(at(point), 2 * h);
+    const Vec3 to = rims_.closestLine(at(others ? other : point), 2 * h).point;
+    const ClosestPoint corner = rims_.closestCorner(to, nearCorner * h);
     const auto isThere = [&](std::int32_t q) { return q != point && q != other && norm(at(q) - corner.point) < onRim * h; };
     return corner && std::ranges::none_of(around, isThere) ? corner.point : to;
 }
@@ -153,7 +138,7 @@ double RimCloser::errorOf(const std::vector<std::int32_t>& star, const RimMove& 
         for (const std::int32_t p : {move.keep, move.gone}) {
             if (p < 0) continue;
             sum += offGeometry(at(p), h);
-            if (const ClosestPoint line = rims_.line(at(p), reach * h)) nearest = std::min(nearest, line.distance / h);
+            nearest = std::min(nearest, offRim(at(p), reach * h) / h);
         }
         sum += nearest;
     }
@@ -183,10 +168,10 @@ std::optional<Change> RimCloser::find(const Node& node) const {
     std::ranges::stable_sort(next, {}, [&](std::int32_t q) { return norm2(at(q) - at(node.point)); });
     const double h = node.h;
     for (const std::int32_t q : next) {
-        const ClosestPoint line = rims_.line(at(q), reach * h);
-        if (!line) continue;
+        const FeatureIndex::Line line = rims_.closestLine(at(q), reach * h);
+        if (!line.found) continue;
         const Vec3 edge = at(q) - at(node.point);
-        if (norm(edge) > apart * h && std::abs(dot(edge, rims_.tangent(line))) > across * norm(edge)) continue;
+        if (norm(edge) > apart * h && std::abs(dot(edge, line.tangent)) > across * norm(edge)) continue;
         const std::int32_t keep = std::min(q, node.point), gone = std::max(q, node.point);
         if (auto change = tryMove({keep, gone, placeOnRim(node.point, q, h, next)}, h)) return change;
     }
@@ -214,16 +199,16 @@ std::vector<Change> RimCloser::findPairs() const {
         const std::int32_t v = front_.mesh.from_vertex_handle(he).idx(), w = front_.mesh.to_vertex_handle(he).idx();
         const std::int32_t p = wall_.nodes[Index(v)], q = wall_.nodes[Index(w)];
         const double h = std::min(wall_.nodeH[Index(v)], wall_.nodeH[Index(w)]);
-        const ClosestPoint a = rims_.line(at(p), pairReach * h);
-        if (!a) return;
-        const ClosestPoint b = rims_.line(at(q), pairReach * h);
-        if (!b) return;
-        const double cosine = std::abs(dot(rims_.tangent(a), normalized(front_.front[Index(w)] - front_.front[Index(v)])));
+        const FeatureIndex::Line a = rims_.closestLine(at(p), pairReach * h);
+        if (!a.found) return;
+        const FeatureIndex::Line b = rims_.closestLine(at(q), pairReach * h);
+        if (!b.found) return;
+        const double cosine = std::abs(dot(a.tangent, normalized(front_.front[Index(w)] - front_.front[Index(v)])));
         if (cosine > alongRim) return;
-        ClosestPoint to = rims_.line((a.point + b.point) * 0.5, h);
+        Vec3 to = rims_.closestLine((a.point + b.point) * 0.5, h).point;
         for (const std::int32_t end : {p, q})
-            if (const ClosestPoint corner = rims_.corner(at(end), onRim * h)) to = corner; // which a node has reached
-        pairs[e] = {cosine + norm(at(p) - at(q)) / h, std::min(p, q), std::max(p, q), to.point};
+            if (const ClosestPoint corner = rims_.closestCorner(at(end), onRim * h)) to = corner.point; // which a node has reached
+        pairs[e] = {cosine + norm(at(p) - at(q)) / h, std::min(p, q), std::max(p, q), to};
     });
     std::erase_if(pairs, [](const Pair& p) { return p.p < 0; });
     std::ranges::stable_sort(pairs, {}, &Pair::cost);
@@ -279,7 +264,7 @@ std::vector<Change> RimCloser::closePairs() {
 // Single pairs and nodes, where that helps.
 void RimCloser::seekRest(ClosedRims& out) {
     std::vector<std::uint8_t> isNear(wall_.nodes.size(), 0);
-    parallelFor(isNear.size(), [&](Index i) { isNear[i] = bool(rims_.line(at(wall_.nodes[i]), reach * wall_.nodeH[i])); });
+    parallelFor(isNear.size(), [&](Index i) { isNear[i] = rims_.closestLine(at(wall_.nodes[i]), reach * wall_.nodeH[i]).found; });
     std::vector<std::uint32_t> places;
     for (Index i = 0; i < isNear.size(); ++i)
         if (isNear[i]) places.push_back(static_cast<std::uint32_t>(i));
@@ -313,7 +298,7 @@ ClosedRims RimCloser::run() {
 } // namespace
 
 ClosedRims closeRims(PolyMesh& mesh, const Front& front, const FeatureGraph& features, const SurfaceIndex& index, const DictionaryLimits& limits) {
-    const Rims rims(features);
+    const FeatureIndex rims(rimsOf(features));
     if (rims.empty()) return {};
     const Wall wall = collectWall(mesh, {});
     return RimCloser(mesh, front, wall, rims, index, limits).run();

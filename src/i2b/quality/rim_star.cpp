@@ -1,9 +1,9 @@
 #include "i2b/quality/rim_star.h"
 #include "i2b/core/numbering.h"
+#include "i2b/core/parallel.h"
 #include "i2b/core/sort_unique.h"
 #include "i2b/quality/dictionary_measure.h"
 #include <algorithm>
-#include <numeric>
 
 namespace i2b {
 namespace {
@@ -14,8 +14,11 @@ bool has(const std::vector<std::int32_t>& loop, std::int32_t point) { return std
 
 } // namespace
 
-RimStar::RimStar(PolyMesh& mesh, const Rows& cellFaces) : mesh_(mesh), cellFaces_(cellFaces), joined_(mesh.points.size()) {
-    std::iota(joined_.begin(), joined_.end(), 0);
+RimStar::RimStar(PolyMesh& mesh, const Rows& cellFaces) : mesh_(mesh), cellFaces_(cellFaces) {}
+
+std::int32_t RimStar::nowOf(std::int32_t point) const {
+    for (auto at = joined_.find(point); at != joined_.end(); at = joined_.find(point)) point = at->second;
+    return point;
 }
 
 void RimStar::loopOf(std::int32_t face, const RimMove& move, std::vector<std::int32_t>& loop) const { loopOf(face, State::now, move, loop); }
@@ -23,7 +26,7 @@ void RimStar::loopOf(std::int32_t face, const RimMove& move, std::vector<std::in
 void RimStar::loopOf(std::int32_t face, State state, const RimMove& move, std::vector<std::int32_t>& loop) const {
     loop.clear();
     for (std::int32_t p : mesh_.face(face)) {
-        while (state == State::now && joined_[Index(p)] != p) p = joined_[Index(p)];
+        if (state == State::now) p = nowOf(p);
         if (p == move.gone && p >= 0) p = move.keep;
         if (loop.empty() || loop.back() != p) loop.push_back(p);
     }
@@ -152,54 +155,75 @@ bool RimStar::isNoWorse(const RimMove& move, const std::vector<std::int32_t>& st
 }
 
 void RimStar::apply(const RimMove& move) {
-    if (move.gone >= 0) joined_[Index(move.gone)] = move.keep;
+    if (move.gone >= 0) joined_[move.gone] = move.keep;
     Vec3& place = mesh_.points[Index(move.keep)];
     first_.try_emplace(move.keep, place);
     place = move.to;
 }
 
 void RimStar::takeBack(const RimMove& move) {
-    if (move.gone >= 0) joined_[Index(move.gone)] = move.gone;
+    joined_.erase(move.gone);
     mesh_.points[Index(move.keep)] = first_.at(move.keep);
 }
 
 std::vector<std::int32_t> RimStar::rewrite() {
+    std::vector<std::int32_t> lost;
+    if (joined_.empty()) return lost;
     PolyMesh& mesh = mesh_;
-    std::vector<std::int32_t> lost, loop, lostIn(mesh.patches.size(), 0), number(mesh.points.size());
-    Index points = 0, inner = 0;
-    for (Index p = 0; p < number.size(); ++p) {
-        if (isGone(static_cast<std::int32_t>(p))) continue;
-        number[p] = static_cast<std::int32_t>(points);
-        mesh.points[points++] = mesh.points[p];
+    std::vector<std::int32_t> number(mesh.points.size()), gone;
+    for (const auto& [point, to] : joined_) gone.push_back(point);
+    std::ranges::sort(gone);
+    parallelFor(number.size(), [&](Index p) {
+        const auto n = static_cast<std::int32_t>(p);
+        number[p] = n - static_cast<std::int32_t>(std::ranges::lower_bound(gone, n) - gone.begin());
+    });
+    for (const std::int32_t p : gone) number[Index(p)] = number[Index(nowOf(p))];
+    for (Index i = 0; i < gone.size(); ++i) { // what lies between two that are gone moves down
+        const auto from = mesh.points.begin() + gone[i], to = i + 1 < gone.size() ? mesh.points.begin() + gone[i + 1] : mesh.points.end();
+        std::move(from + 1, to, from - static_cast<std::ptrdiff_t>(i));
     }
-    mesh.points.resize(points);
-    RawVector<std::uint32_t> offsets; // the old ones are asked for to the end; all else shrinks in place
-    offsets.reserve(mesh.faceOffsets.size());
-    offsets.push_back(0);
-    Index patch = 0;
-    for (std::int32_t f = 0, faces = mesh.faces(), internal = mesh.internalFaces(); f < faces; ++f) {
-        while (f >= internal && f >= mesh.patches[patch].start + mesh.patches[patch].count) ++patch;
-        loopOf(f, {}, loop);
-        const std::int32_t own = mesh.owner[Index(f)];
-        if (loop.size() < 3) { // of the boundary: mayJoin()
-            ++lostIn[patch];
-            lost.push_back(own);
-            continue;
+    mesh.points.resize(mesh.points.size() - gone.size());
+    // What is left of each face: counted, placed, filled in.
+    const auto faces = Index(mesh.faces()), internal = Index(mesh.internalFaces());
+    const auto forLeft = [&](Index f, const auto& take) { // points that differ from the one before
+        const auto v = mesh.face(static_cast<std::int32_t>(f));
+        for (Index i = 0; i < v.size(); ++i)
+            if (number[Index(v[i])] != number[Index(v[i > 0 ? i - 1 : v.size() - 1])]) take(number[Index(v[i])]);
+    };
+    RawVector<std::uint32_t> offsets(faces + 1);
+    offsets[0] = 0;
+    parallelFor(faces, [&](Index f) {
+        std::uint32_t left = 0;
+        forLeft(f, [&](std::int32_t) { ++left; });
+        offsets[f + 1] = left > 2 ? left : 0;
+    });
+    for (Index f = 0; f < faces; ++f) offsets[f + 1] += offsets[f];
+    RawVector<std::int32_t> vertices(offsets[faces]);
+    parallelFor(faces, [&](Index f) {
+        std::uint32_t at = offsets[f];
+        if (offsets[f + 1] > at) forLeft(f, [&](std::int32_t p) { vertices[at++] = p; });
+    });
+    mesh.faceVertices = std::move(vertices);
+    // Faces of the boundary alone are gone: mayJoin().
+    Index to = internal;
+    std::int32_t start = mesh.internalFaces();
+    for (Patch& patch : mesh.patches) {
+        const Index first = Index(patch.start), end = first + Index(patch.count);
+        for (Index f = first; f < end; ++f) {
+            if (offsets[f + 1] == offsets[f]) {
+                lost.push_back(mesh.owner[f]);
+                continue;
+            }
+            mesh.owner[to] = mesh.owner[f];
+            offsets[++to] = offsets[f + 1];
         }
-        mesh.owner[offsets.size() - 1] = own;
-        if (f < internal) mesh.neighbour[inner++] = mesh.neighbour[Index(f)];
-        std::uint32_t at = offsets.back();
-        for (const std::int32_t p : loop) mesh.faceVertices[at++] = number[Index(p)];
-        offsets.push_back(at);
+        patch.start = start;
+        start = static_cast<std::int32_t>(to);
+        patch.count = start - patch.start;
     }
-    mesh.owner.resize(offsets.size() - 1), mesh.faceVertices.resize(offsets.back());
+    offsets.resize(to + 1), mesh.owner.resize(to);
     mesh.faceOffsets = std::move(offsets);
-    auto start = static_cast<std::int32_t>(inner);
-    for (Index i = 0; i < mesh.patches.size(); ++i) {
-        mesh.patches[i].start = start, mesh.patches[i].count -= lostIn[i];
-        start += mesh.patches[i].count;
-    }
-    std::sort(lost.begin(), lost.end());
+    std::ranges::sort(lost);
     return lost;
 }
 

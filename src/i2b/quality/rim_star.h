@@ -19,7 +19,7 @@ class RimStar {
   public:
     RimStar(PolyMesh& mesh, const Rows& cellFaces); // keeps references; points move in mesh, faces stay up to rewrite()
 
-    bool isGone(std::int32_t point) const { return joined_[static_cast<std::size_t>(point)] != point; }
+    bool isGone(std::int32_t point) const { return joined_.contains(point); }
     // The points of a face after all that was joined and the move: fewer than three where nothing of it is left.
     void loopOf(std::int32_t face, const RimMove& move, std::vector<std::int32_t>& loop) const;
     // The cells that use the points (other: -1, none), ascending; from: one that uses the first.
@@ -40,14 +40,15 @@ class RimStar {
 
   private:
     enum class State { first, now };
+    std::int32_t nowOf(std::int32_t point) const; // what it has become
     bool isWall(std::int32_t face) const;
     LocalEdits::Surroundings around(State state, const RimMove& move, const std::vector<std::int32_t>& star) const;
     void loopOf(std::int32_t face, State state, const RimMove& move, std::vector<std::int32_t>& loop) const;
 
     PolyMesh& mesh_;
     const Rows& cellFaces_;
-    std::vector<std::int32_t> joined_;             // per point what it has become, which may have been joined since; itself for most
-    std::unordered_map<std::int32_t, Vec3> first_; // m, of points that have moved
+    std::unordered_map<std::int32_t, std::int32_t> joined_; // per point that is gone another, which may have gone since
+    std::unordered_map<std::int32_t, Vec3> first_;          // m, of points that have moved
 };
 
 } // namespace i2b
