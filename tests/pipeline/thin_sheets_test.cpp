@@ -8,6 +8,7 @@
 #include "pipeline/temporary_stl.h"
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <numbers>
 #include <numeric>
 
 namespace i2b::test {
@@ -95,6 +96,34 @@ TEST(ThinPlates, ReportsCountWhatIsLeftAtClosedRims) {
     cells.erase(std::ranges::unique(cells).begin(), cells.end());
     EXPECT_EQ(result.walls.wallCell, cells);
     EXPECT_EQ(result.offCauses.size(), result.wallNodes.points.size());
+}
+
+// A ring of sheet metal: both rims are met by nearly every node, and few faces stand across them.
+TEST(ThinSheets, BothRimsOfAnOpenTubeAreMet) {
+    Surface tube;
+    constexpr int segments = 96;
+    for (int i = 0; i < segments; ++i) {
+        const double angle = 2 * std::numbers::pi * i / segments;
+        for (const double z : {0.0, 0.01}) tube.points.push_back({0.06 * std::cos(angle), 0.06 * std::sin(angle), z});
+    }
+    for (std::uint32_t i = 0; i < segments; ++i) {
+        const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % segments);
+        tube.triangles.push_back({a, b, b + 1}), tube.triangles.push_back({a, b + 1, a + 1});
+    }
+    tube.parts = {Part{"tube", "", 0}};
+    tube.partOf.assign(tube.triangles.size(), 0);
+    const TemporaryStl file(tube);
+    Options options;
+    options.geometry.files = {file.path()};
+    options.size.surface = 0.00284;
+    options.domain.flow = Flow::external;
+    options.layers.count = 3;
+    Context context;
+    const MeshResult result = generate(options, context);
+    EXPECT_EQ(result.mesh.validate(), "");
+    EXPECT_EQ(result.report.quality->dictionaryFaces, 0);
+    EXPECT_GT(result.report.fit->wallNodesOnGeometryFraction, 0.99);
+    EXPECT_LT(result.report.fit->tiltedFaceFraction, 0.02);
 }
 
 } // namespace

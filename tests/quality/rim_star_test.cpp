@@ -1,7 +1,9 @@
 // Proves: points of a wall are made one where that leaves a surface, and refused where it would not; cells around them are judged as
 // they would be; and the mesh written is closed, without the faces and points that are gone.
 #include "i2b/quality/rim_star.h"
+#include "i2b/assemble/edit_mesh.h"
 #include "i2b/quality/quality_report.h"
+#include "i2b/quality/rim_shape.h"
 #include "quality/shaken_block.h"
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -98,16 +100,104 @@ TEST(RimStar, RefusesWhatLeavesNoSurface) {
     EXPECT_TRUE(mayJoin(at(1, 1, 4), at(2, 2, 4))); // along an edge now
 }
 
-TEST(RimStar, NoticesWhatIsWorseAndTakesBack) {
+TEST(RimStar, NoticesWhatIsWorse) {
     Joined j;
     const RimMove through{at(2, 1, 4), at(2, 2, 4), {2, 1.5, 2.5}}; // below the next layer of points: cells turn inside out
     EXPECT_TRUE(j.star.mayJoin(through, j.cells(through)));
     EXPECT_FALSE(j.star.isNoWorse(through, j.cells(through), {}));
+}
+
+// The two faces between x = 1 and 3, y = 1 and 2, onto the line y = 1.5: their ends meet, the nodes between stay two, and the cells below
+// become one.
+RimZip zipOfTwo(const Joined& j) {
+    RimZip zip;
+    zip.moves = {across(1), across(3), {at(2, 1, 4), -1, {1.8, 1.5, 4}}, {at(2, 2, 4), -1, {2.2, 1.5, 4}}};
+    const auto uses = [&](std::int32_t f, std::int32_t p) { return std::ranges::find(j.mesh.face(f), p) != j.mesh.face(f).end(); };
+    std::vector<std::int32_t> cells;
+    for (std::int32_t f = j.mesh.patches[1].start; f < j.mesh.faces(); ++f) {
+        if (!uses(f, at(2, 1, 4)) || !uses(f, at(2, 2, 4))) continue;
+        zip.gone.push_back(f);
+        cells.push_back(j.mesh.owner[std::size_t(f)]);
+    }
+    for (const std::int32_t c : cells) zip.cells.emplace_back(c, std::ranges::min(cells));
+    zip.through = {{edgeKey(at(2, 1, 4), at(3, 1, 4)), {at(2, 2, 4)}}, {edgeKey(at(1, 2, 4), at(2, 2, 4)), {at(2, 1, 4)}}};
+    for (const RimMove& move : zip.moves) {
+        const auto around = j.cells(move);
+        zip.star.insert(zip.star.end(), around.begin(), around.end());
+    }
+    std::ranges::sort(zip.star);
+    zip.star.erase(std::ranges::unique(zip.star).begin(), zip.star.end());
+    return zip;
+}
+
+TEST(RimStar, ZipsTwoFacesToOneWedge) {
+    Joined j;
+    const RimZip zip = zipOfTwo(j);
+    ASSERT_EQ(zip.gone.size(), 2u);
+    const Verdict before = j.star.before(zip, {});
+    j.star.use({zip}, {});
+    EXPECT_TRUE(j.star.isSound(zip));
+    EXPECT_TRUE(j.star.isNoWorse(zip, before, {}));
+    std::vector<std::int32_t> loop; // of the face beside the strip: led through the other row's node
+    for (std::int32_t f = j.mesh.patches[1].start; f < j.mesh.faces(); ++f) {
+        const auto v = j.mesh.face(f);
+        if (std::ranges::find(v, at(2, 0, 4)) == v.end() || std::ranges::find(v, at(3, 0, 4)) == v.end()) continue;
+        j.star.loopOf(f, {}, loop);
+        EXPECT_EQ(loop.size(), 5u);
+    }
+    const std::int32_t walls = j.mesh.patches[1].count, cells = j.mesh.cells;
+    EXPECT_EQ(j.star.rewrite().size(), 2u);
+    MeshEdits edits;
+    for (std::int32_t c = 0; c < cells; ++c) edits.groups.push_back(j.star.united().contains(c) ? j.star.united().at(c) : c);
+    editMesh(j.mesh, edits);
+    EXPECT_EQ(j.mesh.validate(), "");
+    EXPECT_EQ(j.mesh.cells, cells - 1);
+    EXPECT_EQ(j.mesh.patches[1].count, walls - 2);
+    EXPECT_EQ(j.mesh.points.size(), 123u);
+    const QualityReport quality = measureQuality(j.mesh);
+    EXPECT_EQ(quality.negativeVolumeCells + quality.openCells + quality.wrongOrientedFaces, 0);
+    EXPECT_NEAR(quality.totalVolume, 64, 1e-12);
+}
+
+TEST(RimStar, RefusesZipsWhoseRowsDoNotMeet) {
+    Joined j;
+    RimZip zip = zipOfTwo(j);
+    zip.through.pop_back(); // one row is led through the other's node, the other is not
+    j.star.use({zip}, {});
+    EXPECT_FALSE(j.star.isSound(zip));
+}
+
+TEST(RimStar, RefusesZipsThatTakeASideOfACell) {
+    Joined j;
+    RimZip zip = zipOfTwo(j);
+    zip.cells.clear(); // the face between the two would have its upper edge to and fro
+    zip.moves.push_back({at(2, 1, 4), at(2, 2, 4), {2, 1.5, 4}});
+    zip.moves.push_back({at(2, 1, 3), at(2, 2, 3), {2, 1.5, 3}});
+    j.star.use({zip}, {});
+    EXPECT_FALSE(j.star.isSound(zip));
+}
+
+TEST(RimStar, OpensZipsToTheBit) {
+    Joined j;
     const std::uint64_t before = j.mesh.checksum();
-    j.star.apply(through);
-    j.star.takeBack(through);
+    j.star.use({zipOfTwo(j)}, {{at(2, 1, 3), {2, 1.25, 3.25}}});
+    EXPECT_NE(j.mesh.checksum(), before);
+    j.star.use({}, {});
     EXPECT_TRUE(j.star.rewrite().empty());
     EXPECT_EQ(j.mesh.checksum(), before);
+}
+
+// A point of the block is moved so far that cells beside the zip do not divide: moving columns mends them.
+TEST(RimShape, MovesColumnsUntilFacesDivide) {
+    Joined j;
+    RimZip zip = zipOfTwo(j);
+    zip.h = 1;
+    for (const int y : {1, 2}) zip.columns.push_back({{at(2, y, 3)}, {1}});
+    const Verdict before = j.star.before(zip, {});
+    j.star.use({zip}, {{at(2, 1, 3), {2.1, 1.9, 3.9}}});
+    ASSERT_FALSE(j.star.isNoWorse(zip, before, {}));
+    for (const auto& [point, place] : shapeZip(j.star, zip, {})) j.star.apply({point, -1, place});
+    EXPECT_TRUE(j.star.isNoWorse(zip, before, {}));
 }
 
 } // namespace

@@ -112,6 +112,11 @@ void dropFaces(WallLayers& walls, const std::vector<std::int32_t>& cells) {
     }
 }
 
+void renumber(WallLayers& walls, const std::vector<std::int32_t>& cellOf) {
+    if (cellOf.empty()) return;
+    parallelFor(walls.wallCell.size(), [&](std::size_t f) { walls.wallCell[f] = cellOf[static_cast<std::size_t>(walls.wallCell[f])]; });
+}
+
 void sortByCell(WallLayers& walls) {
     const std::vector<std::int32_t>& cells = walls.wallCell;
     if (walls.pieces.empty() && std::ranges::adjacent_find(cells, std::ranges::greater_equal()) == cells.end()) return;

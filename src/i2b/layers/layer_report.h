@@ -61,6 +61,8 @@ void settleCells(WallLayers& walls, const LayerStack& stack, std::int32_t firstL
                  const std::vector<std::int32_t>& morePieces);
 // Faces of the wall that are gone: cells of the mesh, one for each.
 void dropFaces(WallLayers& walls, const std::vector<std::int32_t>& cells);
+// cellOf: per cell of the mesh its number from now on; empty: all stay.
+void renumber(WallLayers& walls, const std::vector<std::int32_t>& cellOf);
 // In the order of cells, each cell once: of several faces at one the first.
 void sortByCell(WallLayers& walls);
 LayerReport summarize(const WallLayers& walls, const Front& front, const std::vector<Part>& parts, int requested);

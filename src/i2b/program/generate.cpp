@@ -176,17 +176,20 @@ MeshResult generate(const Options& options, Context& context) {
     const LastResort changed = stage(
         context, "last resort", [&] { return changePoorPlaces(out.mesh, walls.repaired.unmended, limits, thinFrom); },
         [](const LastResort& l) { return l.changes.merged + l.changes.divided; });
+    auto firstLayerCell = static_cast<std::int32_t>(lattice->cellCount());
+    if (!changed.cellOf.empty()) firstLayerCell = 1 + *std::max_element(changed.cellOf.begin(), changed.cellOf.begin() + firstLayerCell);
     const ClosedRims rims = stage(
-        context, "rims", [&] { return closeRims(out.mesh, walls.front, features, *c.index, limits); },
-        [](const ClosedRims& r) { return r.closed + r.moved; });
+        context, "rims", [&] { return closeRims(out.mesh, walls.front, features, *c.index, limits, firstLayerCell); },
+        [](const ClosedRims& r) { return static_cast<std::int64_t>(r.lostNodes.size()) + r.moved; });
     dropPlaces(walls.fitted.offCauses, rims.lostNodes), dropPlaces(walls.repaired.movedWalls, rims.lostNodes);
     out.report = reportOf(c, options, context);
     out.report.fitCutShort = walls.fitted.cutShort;
     out.report.changes = changed.changes;
-    out.report.changes.joined = rims.closed;
+    out.report.changes.joined = static_cast<std::int64_t>(rims.lostNodes.size());
     out.walls = measureLayers(walls.front, walls.laid.stack);
     settleCells(out.walls, walls.laid.stack, static_cast<std::int32_t>(lattice->cellCount()), changed.cellOf, changed.morePieces);
     dropFaces(out.walls, rims.lostFaces);
+    renumber(out.walls, rims.cellOf);
     out.report.layers = summarize(out.walls, walls.front, c.surface.parts, options.layers.count);
     out.walls.askedFirst = {}, out.walls.askedThickness = {}; // the report has them
     sortByCell(out.walls);

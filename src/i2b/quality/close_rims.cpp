@@ -1,10 +1,12 @@
 #include "i2b/quality/close_rims.h"
+#include "i2b/assemble/edit_mesh.h"
 #include "i2b/core/parallel.h"
 #include "i2b/core/sort_unique.h"
 #include "i2b/fit/features.h"
 #include "i2b/front/front.h"
 #include "i2b/quality/fit_wall.h"
 #include "i2b/quality/rim_star.h"
+#include "i2b/quality/zip_rims.h"
 #include <algorithm>
 #include <optional>
 
@@ -13,8 +15,6 @@ namespace {
 
 using Index = std::size_t;
 constexpr int mostRounds = 8;
-constexpr double pairReach = 0.45;  // of h: both of a pair are as near to the rim
-constexpr double alongRim = 0.75;   // cosine: edges of the front that run along the rim are not across it
 constexpr double reach = 0.6;       // of h: nodes nearer to a rim are looked at
 constexpr double off = 0.01;        // of h: those farther off the geometry are in need,
 constexpr double onRim = 0.02;      // and those farther off the rim,
@@ -52,7 +52,7 @@ class RimCloser {
         for (const WallEdge& e : wall.edges)
             for (const std::int32_t p : {e.a, e.b}) cellAt_[nodePlace(wall, p)] = mesh.owner[Index(wall.faces[Index(e.face)])];
     }
-    ClosedRims run();
+    ClosedRims run(std::int32_t firstLayerCell);
 
   private:
     struct Node { // a wall node in need
@@ -68,9 +68,6 @@ class RimCloser {
         const FeatureIndex::Line line = rims_.closestLine(p, radius);
         return line.found ? norm(line.point - p) : std::numeric_limits<double>::infinity();
     }
-    std::vector<Change> findPairs() const;
-    std::vector<Change> closePairs();
-    bool openWhereWorse(std::vector<Change>& closed);
     void seekRest(ClosedRims& out);
     std::vector<std::int32_t> wallNeighbours(std::int32_t point, const std::vector<std::int32_t>& star) const;
     std::optional<Node> nodeInNeed(Index place) const;
@@ -88,6 +85,7 @@ class RimCloser {
     const DictionaryLimits& limits_;
     Rows cellFaces_;
     RimStar star_;
+    bool anyJoined_ = false;
     std::vector<std::int32_t> cellAt_; // per wall node, one that uses it
 };
 
@@ -181,84 +179,16 @@ std::optional<Change> RimCloser::find(const Node& node) const {
 }
 
 void RimCloser::write(ClosedRims& out) {
+    const std::vector<std::int32_t> gone = star_.pointsGone();
     for (Index i = 0; i < wall_.nodes.size(); ++i)
-        if (star_.isGone(wall_.nodes[i])) out.lostNodes.push_back(static_cast<std::int32_t>(i));
+        if (std::ranges::binary_search(gone, wall_.nodes[i])) out.lostNodes.push_back(static_cast<std::int32_t>(i));
     out.lostFaces = star_.rewrite();
-}
-
-// Edges of the front across a rim, each vertex in one at most: those that are most so come first.
-std::vector<Change> RimCloser::findPairs() const {
-    struct Pair {
-        double cost = 0;
-        std::int32_t p = -1, q = -1;
-        Vec3 to;
-    };
-    std::vector<Pair> pairs(front_.mesh.n_edges());
-    parallelFor(pairs.size(), [&](Index e) {
-        const auto he = front_.mesh.halfedge_handle(FrontMesh::EdgeHandle(static_cast<int>(e)), 0);
-        const std::int32_t v = front_.mesh.from_vertex_handle(he).idx(), w = front_.mesh.to_vertex_handle(he).idx();
-        const std::int32_t p = wall_.nodes[Index(v)], q = wall_.nodes[Index(w)];
-        const double h = std::min(wall_.nodeH[Index(v)], wall_.nodeH[Index(w)]);
-        const FeatureIndex::Line a = rims_.closestLine(at(p), pairReach * h);
-        if (!a.found) return;
-        const FeatureIndex::Line b = rims_.closestLine(at(q), pairReach * h);
-        if (!b.found) return;
-        const double cosine = std::abs(dot(a.tangent, normalized(front_.front[Index(w)] - front_.front[Index(v)])));
-        if (cosine > alongRim) return;
-        Vec3 to = rims_.closestLine((a.point + b.point) * 0.5, h).point;
-        for (const std::int32_t end : {p, q})
-            if (const ClosestPoint corner = rims_.closestCorner(at(end), onRim * h)) to = corner.point; // which a node has reached
-        pairs[e] = {cosine + norm(at(p) - at(q)) / h, std::min(p, q), std::max(p, q), to};
-    });
-    std::erase_if(pairs, [](const Pair& p) { return p.p < 0; });
-    std::ranges::stable_sort(pairs, {}, &Pair::cost);
-    std::vector<std::uint8_t> taken(wall_.nodes.size(), 0);
-    std::vector<Change> found;
-    for (const Pair& pair : pairs) {
-        const Index a = nodePlace(wall_, pair.p), b = nodePlace(wall_, pair.q);
-        if (taken[a] || taken[b]) continue;
-        taken[a] = taken[b] = 1;
-        found.push_back({{pair.p, pair.q, pair.to}, star_.cellsAt(pair.p, pair.q, cellAt_[a])});
-    }
-    return found;
-}
-
-// Opens those of the pairs in whose cells something is worse than it was; whether there were any.
-bool RimCloser::openWhereWorse(std::vector<Change>& closed) {
-    std::vector<std::uint8_t> isWorse(closed.size(), 0);
-    parallelFor(closed.size(), [&](Index i) { isWorse[i] = !star_.isNoWorse({}, closed[i].star, limits_); }, 1);
-    std::vector<Change> left;
-    for (Index i = 0; i < closed.size(); ++i) {
-        if (isWorse[i]) star_.takeBack(closed[i].move);
-        else left.push_back(std::move(closed[i]));
-    }
-    const bool any = left.size() < closed.size();
-    closed = std::move(left);
-    return any;
-}
-
-// One pair at a time would leave slivers beside it: all are closed, and those opened that leave something worse.
-std::vector<Change> RimCloser::closePairs() {
-    std::vector<Change> closed;
-    for (Change& pair : findPairs()) {
-        if (!star_.mayJoin(pair.move, pair.star)) continue;
-        star_.apply(pair.move);
-        closed.push_back(std::move(pair));
-    }
-    bool any = true;
-    while (any) {
-        while (openWhereWorse(closed)) {}
-        // What may be joined hangs on what else is.
-        const std::size_t before = closed.size();
-        std::erase_if(closed, [&](const Change& pair) {
-            star_.takeBack(pair.move);
-            if (!star_.mayJoin(pair.move, pair.star)) return true;
-            star_.apply(pair.move);
-            return false;
-        });
-        any = closed.size() < before;
-    }
-    return closed;
+    if (star_.united().empty()) return;
+    MeshEdits edits;
+    edits.groups.resize(Index(mesh_.cells));
+    parallelFor(edits.groups.size(), [&](Index c) { edits.groups[c] = static_cast<std::int32_t>(c); });
+    for (const auto& [cell, to] : star_.united()) edits.groups[Index(cell)] = to;
+    out.cellOf = editMesh(mesh_, edits);
 }
 
 // Single pairs and nodes, where that helps.
@@ -281,27 +211,28 @@ void RimCloser::seekRest(ClosedRims& out) {
             touched.insert(touched.end(), around.begin(), around.end());
             std::inplace_merge(touched.begin(), touched.begin() + middle, touched.end());
             star_.apply(change->move);
-            ++(change->move.gone >= 0 ? out.closed : out.moved);
+            anyJoined_ = anyJoined_ || change->move.gone >= 0;
+            out.moved += change->move.gone < 0;
         }
         if (touched.empty()) break;
     }
 }
 
-ClosedRims RimCloser::run() {
+ClosedRims RimCloser::run(std::int32_t firstLayerCell) {
     ClosedRims out;
-    out.closed = static_cast<std::int64_t>(closePairs().size());
+    anyJoined_ = zipRims(star_, mesh_, cellFaces_, wall_, front_, rims_, limits_, firstLayerCell) > 0;
     seekRest(out);
-    if (out.closed > 0) write(out);
+    if (anyJoined_) write(out);
     return out;
 }
 
 } // namespace
 
-ClosedRims closeRims(PolyMesh& mesh, const Front& front, const FeatureGraph& features, const SurfaceIndex& index, const DictionaryLimits& limits) {
+ClosedRims closeRims(PolyMesh& mesh, const Front& front, const FeatureGraph& features, const SurfaceIndex& index, const DictionaryLimits& limits, std::int32_t firstLayerCell) {
     const FeatureIndex rims(rimsOf(features));
     if (rims.empty()) return {};
     const Wall wall = collectWall(mesh, {});
-    return RimCloser(mesh, front, wall, rims, index, limits).run();
+    return RimCloser(mesh, front, wall, rims, index, limits).run(firstLayerCell);
 }
 
 } // namespace i2b

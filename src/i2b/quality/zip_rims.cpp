@@ -1,0 +1,116 @@
+#include "i2b/quality/zip_rims.h"
+#include "i2b/core/parallel.h"
+#include "i2b/quality/rim_shape.h"
+#include <algorithm>
+#include <map>
+
+namespace i2b {
+namespace {
+
+using Index = std::size_t;
+constexpr int shapings = 8; // rounds in which columns are moved
+
+class Zipper {
+  public:
+    Zipper(RimStar& star, std::vector<RimZip> zips, std::int32_t cells, const DictionaryLimits& limits)
+        : star_(star), limits_(limits), zips_(std::move(zips)), before_(zips_.size()), isWorse_(zips_.size(), 0), isChanged_(Index(cells), 1) {}
+    std::int64_t run();
+
+  private:
+    void judgeChanged();
+    void shapeWorse();
+    bool openWorse();
+    void markChanged(const RimZip& zip) {
+        for (const std::int32_t c : star_.withNeighbours(zip.star)) isChanged_[Index(c)] = 1;
+    }
+
+    RimStar& star_;
+    const DictionaryLimits& limits_;
+    std::vector<RimZip> zips_;
+    std::vector<Verdict> before_;         // per zip
+    std::vector<std::uint8_t> isWorse_;   // per zip
+    std::vector<std::uint8_t> isChanged_; // per cell: since zips there were judged
+    std::map<std::int32_t, Vec3> places_; // m, of points of columns that were moved
+};
+
+// Of zips whose cells have changed since.
+void Zipper::judgeChanged() {
+    parallelFor(zips_.size(), [&](Index i) {
+        if (std::ranges::none_of(zips_[i].star, [&](std::int32_t c) { return isChanged_[Index(c)] != 0; })) return;
+        isWorse_[i] = !star_.isSound(zips_[i]) || !star_.isNoWorse(zips_[i], before_[i], limits_);
+    }, 1);
+    std::ranges::fill(isChanged_, 0);
+}
+
+// Those that share no cell side by side, the others in later turns, in their order.
+void Zipper::shapeWorse() {
+    std::vector<Index> left;
+    for (Index i = 0; i < zips_.size(); ++i)
+        if (isWorse_[i] && star_.isSound(zips_[i])) left.push_back(i);
+    while (!left.empty()) {
+        std::vector<Index> turn, later;
+        std::vector<std::int32_t> taken;
+        for (const Index i : left) {
+            const std::vector<std::int32_t> around = star_.withNeighbours(zips_[i].star);
+            if (std::ranges::any_of(around, [&](std::int32_t c) { return std::ranges::binary_search(taken, c); })) {
+                later.push_back(i);
+                continue;
+            }
+            const auto middle = static_cast<std::ptrdiff_t>(taken.size());
+            taken.insert(taken.end(), around.begin(), around.end());
+            std::inplace_merge(taken.begin(), taken.begin() + middle, taken.end());
+            turn.push_back(i);
+        }
+        std::vector<std::vector<std::pair<std::int32_t, Vec3>>> places(turn.size());
+        parallelFor(turn.size(), [&](Index k) { places[k] = shapeZip(star_, zips_[turn[k]], limits_); }, 1);
+        for (Index k = 0; k < turn.size(); ++k) {
+            if (places[k].empty()) continue;
+            for (const auto& [point, place] : places[k]) places_[point] = place, star_.apply({point, -1, place});
+            markChanged(zips_[turn[k]]);
+        }
+        left = std::move(later);
+    }
+}
+
+bool Zipper::openWorse() {
+    Index kept = 0;
+    std::map<std::int32_t, Vec3> places;
+    for (Index i = 0; i < zips_.size(); ++i) {
+        if (isWorse_[i]) {
+            markChanged(zips_[i]);
+            continue;
+        }
+        if (kept < i) zips_[kept] = std::move(zips_[i]), before_[kept] = before_[i];
+        for (const RimZip::Column& column : zips_[kept].columns)
+            for (const std::int32_t p : column.points)
+                if (const auto at = places_.find(p); at != places_.end()) places.insert(*at);
+        ++kept;
+    }
+    if (kept == zips_.size()) return false;
+    zips_.resize(kept), before_.resize(kept);
+    isWorse_.assign(kept, 0);
+    places_ = std::move(places); // of none that only those opened had
+    star_.use(zips_, places_);
+    return true;
+}
+
+std::int64_t Zipper::run() {
+    if (zips_.empty()) return 0;
+    parallelFor(zips_.size(), [&](Index i) { before_[i] = star_.before(zips_[i], limits_); }, 1);
+    star_.use(zips_, places_);
+    int round = 0;
+    do {
+        judgeChanged();
+        if (round++ < shapings) shapeWorse(), judgeChanged();
+    } while (openWorse());
+    return static_cast<std::int64_t>(zips_.size());
+}
+
+} // namespace
+
+std::int64_t zipRims(RimStar& star, const PolyMesh& mesh, const Rows& cellFaces, const Wall& wall, const Front& front, const FeatureIndex& rims,
+                     const DictionaryLimits& limits, std::int32_t firstLayerCell) {
+    return Zipper(star, findRimZips(mesh, cellFaces, star, wall, front, rims, firstLayerCell), mesh.cells, limits).run();
+}
+
+} // namespace i2b
