@@ -305,6 +305,31 @@ TEST(SurfaceIndex, needles) {
 }
 
 // Nothing to find is an answer too.
+// Strips of an extruded profile, as CAD programs write them: triangles a thousand times as long as wide. Their plane is known to less than
+// their corners are, which must let no segment through.
+TEST(SurfaceIndex, stripsLetNoSegmentThrough) {
+    Random random(5);
+    for (const double width : {1e-2, 1e-3, 1e-5, 1e-7}) {
+        for (int pose = 0; pose < 20; ++pose) {
+            const Vec3 along = normalized(random.vec(1)), across = normalized(cross(along, random.vec(1)));
+            const Vec3 a = random.vec(1), b = a + across * width, c = b + along, d = a + along;
+            Surface s;
+            s.parts.push_back({"strip", "", 2});
+            addTriangle(s, a, b, c), addTriangle(s, a, c, d);
+            const SurfaceIndex index(s);
+            int through = 0, beside = 0;
+            for (int i = 0; i < 200; ++i) {
+                const Vec3 p = a + along * random(0.001, 0.999) + across * (width * random(0.001, 0.999)), way = random.vec(0.02);
+                through += !index.firstHit(p - way, p + way);
+                const Vec3 off = across * (1.01 * width);
+                beside += bool(index.firstHit(p + off - cross(along, across) * 0.01, p + off + cross(along, across) * 0.01));
+            }
+            EXPECT_EQ(through, 0) << width;
+            EXPECT_EQ(beside, 0) << width;
+        }
+    }
+}
+
 TEST(SurfaceIndex, empty) {
     const Surface s;
     const SurfaceIndex index(s);

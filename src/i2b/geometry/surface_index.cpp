@@ -101,10 +101,12 @@ double touchInPlane(const Vec3& d, const Vec3& p, const Vec3& q, const Vec3& r, 
     return best;
 }
 
+constexpr double mostOff = 1e-13, mostOffNeedles = 1e-9; // of the sizes involved: a hit may lie so far off its triangle
+
 // t of the first point of the closed segment a + t d on the closed triangle, 2 if there is none. Signs are
 // judged with the error of their terms and taken as a hit where it leaves them open, so that no segment slips
 // between two triangles that share an edge; the price is a hit that misses by some 1e-15 of the sizes
-// involved.
+// involved, and more for needles.
 double hitTriangle(const Vec3& a, const Vec3& d, const TreeTriangle& tri) {
     const Vec3 p = tri.a - a, q = tri.b - a, r = tri.c - a;
     const double lp = maxAbs(p), lq = maxAbs(q), lr = maxAbs(r), ld = maxAbs(d);
@@ -119,13 +121,18 @@ double hitTriangle(const Vec3& a, const Vec3& d, const TreeTriangle& tri) {
     const double sa = -dot(n, p), sb = dot(n, d - p);
     const double ea = k * area * lp, eb = k * area * (lp + ld);
     if ((sa > ea && sb > eb) || (sa < -ea && sb < -eb)) return 2;
-    const double tolerance = 1e-13 * std::max(std::max(lp, lq), std::max(lr, ld)),
-                 tolerance2 = tolerance * tolerance;
-    if (std::abs(sa - sb) > ea + eb) {
-        const double t = std::clamp(sa / (sa - sb), 0.0, 1.0);
-        if (norm2(d * t - closestPointOnTriangle(d * t, p, q, r)) <= tolerance2) return t;
-    }
-    return touchInPlane(d, p, q, r, tolerance2);
+    const double size = std::max(std::max(lp, lq), std::max(lr, ld));
+    const double tolerance = mostOff * size, tolerance2 = tolerance * tolerance;
+    if (std::abs(sa - sb) <= ea + eb) return touchInPlane(d, p, q, r, tolerance2);
+    const double t = std::clamp(sa / (sa - sb), 0.0, 1.0);
+    if ((u > eu && v > ev && w > ew) || (u < -eu && v < -ev && w < -ew)) return t;
+    const double off2 = norm2(d * t - closestPointOnTriangle(d * t, p, q, r));
+    if (off2 <= tolerance2) return t;
+    const double touch = touchInPlane(d, p, q, r, tolerance2);
+    if (touch <= 1) return touch;
+    // Of a needle the plane is not known as well as the points are.
+    const double ofPlane = std::min((ea + eb) / std::max(norm(n), 1e-300), mostOffNeedles * size);
+    return off2 <= ofPlane * ofPlane ? t : 2;
 }
 
 } // namespace
@@ -311,7 +318,7 @@ SegmentHit SurfaceIndex::firstHit(const Vec3& a, const Vec3& b, double before) c
     // Boxes are judged in single precision. Twice the farthest that hitTriangle() lets a hit lie off its triangle, and so
     // off the boxes, and what rounding of places and differences adds; `wide` is for the rounding of quotients.
     constexpr double single = std::numeric_limits<float>::epsilon();
-    const double pad = 2e-13 * (2 * (tree.reach + maxAbs(from)) + maxAbs(d)) +
+    const double pad = 2 * mostOffNeedles * (2 * (tree.reach + maxAbs(from)) + maxAbs(d)) +
                        4 * eps * (tree.magnitude + maxAbs(a) + maxAbs(b)) + 4 * single * (tree.reach + maxAbs(from));
     constexpr auto wide = static_cast<float>(1 + 16 * single);
     float inverse[3], low[3], high[3];
