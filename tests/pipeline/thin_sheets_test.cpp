@@ -98,32 +98,50 @@ TEST(ThinPlates, ReportsCountWhatIsLeftAtClosedRims) {
     EXPECT_EQ(result.offCauses.size(), result.wallNodes.points.size());
 }
 
-// A ring of sheet metal: both rims are met by nearly every node, and few faces stand across them.
-TEST(ThinSheets, BothRimsOfAnOpenTubeAreMet) {
+// A tube of strips from end to end, open at both; m.
+Surface openTube(double radius, double length, int strips) {
     Surface tube;
-    constexpr int segments = 96;
-    for (int i = 0; i < segments; ++i) {
-        const double angle = 2 * std::numbers::pi * i / segments;
-        for (const double z : {0.0, 0.01}) tube.points.push_back({0.06 * std::cos(angle), 0.06 * std::sin(angle), z});
+    for (int i = 0; i < strips; ++i) {
+        const double angle = 2 * std::numbers::pi * i / strips;
+        for (const double z : {0.0, length}) tube.points.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
     }
-    for (std::uint32_t i = 0; i < segments; ++i) {
-        const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % segments);
+    const auto n = static_cast<std::uint32_t>(2 * strips);
+    for (std::uint32_t a = 0; a < n; a += 2) {
+        const std::uint32_t b = (a + 2) % n;
         tube.triangles.push_back({a, b, b + 1}), tube.triangles.push_back({a, b + 1, a + 1});
     }
     tube.parts = {Part{"tube", "", 0}};
     tube.partOf.assign(tube.triangles.size(), 0);
+    return tube;
+}
+
+MeshResult meshTube(const Surface& tube, double size) {
     const TemporaryStl file(tube);
     Options options;
     options.geometry.files = {file.path()};
-    options.size.surface = 0.00284;
+    options.size.surface = size;
     options.domain.flow = Flow::external;
     options.layers.count = 3;
     Context context;
-    const MeshResult result = generate(options, context);
+    return generate(options, context);
+}
+
+// A ring of sheet metal: both rims are met by nearly every node, and few faces stand across them.
+TEST(ThinSheets, BothRimsOfAnOpenTubeAreMet) {
+    const MeshResult result = meshTube(openTube(0.06, 0.01, 96), 0.00284);
     EXPECT_EQ(result.mesh.validate(), "");
     EXPECT_EQ(result.report.quality->dictionaryFaces, 0);
     EXPECT_GT(result.report.fit->wallNodesOnGeometryFraction, 0.99);
     EXPECT_LT(result.report.fit->tiltedFaceFraction, 0.02);
+}
+
+// As CAD programs write extruded walls: strips over a thousand times as long as wide. The wall is as smooth on them as on any triangles.
+TEST(ThinSheets, WallsOfLongStripsAreSmooth) {
+    const MeshResult result = meshTube(openTube(0.1, 1, 800), 0.02);
+    EXPECT_EQ(result.mesh.validate(), "");
+    EXPECT_EQ(result.report.quality->dictionaryFaces, 0);
+    EXPECT_GT(result.report.fit->wallNodesOnGeometryFraction, 0.995);
+    EXPECT_LT(result.report.fit->tiltedFaceFraction, 0.01);
 }
 
 } // namespace

@@ -36,6 +36,10 @@ class LoopFence {
 // body(i) for i in [0, n), in any order, each exactly once.
 template <class Body>
 void parallelFor(std::size_t n, const Body& body, std::size_t grain = 256) {
+    if (n <= grain) { // one task: small meshes are measured by the thousand within other loops
+        for (std::size_t i = 0; i < n; ++i) body(i);
+        return;
+    }
     const LoopFence fence;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain), [&](const tbb::blocked_range<std::size_t>& r) {
         fence.enter();
@@ -49,6 +53,7 @@ void parallelFor(std::size_t n, const Body& body, std::size_t grain = 256) {
 template <class Body>
 void parallelChunks(std::size_t n, std::size_t size, const Body& body) {
     const std::size_t chunks = (n + size - 1) / size;
+    if (chunks == 1) return void(body(0, n, 0));
     const LoopFence fence;
     tbb::parallel_for(std::size_t(0), chunks, [&](std::size_t c) {
         fence.enter();

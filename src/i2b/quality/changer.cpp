@@ -48,7 +48,8 @@ bool hasNoMoreTwice(const PolyMesh& now, const PolyMesh& before) {
         measureFaceFaces(m, buildPointFaces(mesh));
         return m.report.duplicateFaces;
     };
-    return count(now) <= count(before);
+    const std::int64_t twice = count(now);
+    return twice == 0 || twice <= count(before);
 }
 
 bool isBetter(const Verdict& now, const Verdict& before) {
