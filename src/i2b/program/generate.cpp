@@ -15,6 +15,7 @@
 #include "i2b/program/run_stage.h"
 #include "i2b/program/walls.h"
 #include "i2b/quality/close_rims.h"
+#include "i2b/quality/last_moves.h"
 #include "i2b/quality/last_resort.h"
 #include "i2b/sizing/automatic.h"
 #include "i2b/sizing/estimate.h"
@@ -173,9 +174,14 @@ MeshResult generate(const Options& options, Context& context) {
         notes.push_back(fmt::format("the limit of min-pyramid-volume, {:g} m3, is for larger cells than these: {:.2g} m3 is taken", options.quality.pyramidVolume, limits.pyramidVolume));
     Walls walls = makeWalls({c, *lattice, features, plans, options.fit, limits}, out.mesh, context);
     const std::int32_t thinFrom = walls.laid.stack.areFlat() ? static_cast<std::int32_t>(lattice->cellCount()) : out.mesh.cells;
+    std::int64_t lastMoves = 0;
     const LastResort changed = stage(
-        context, "last resort", [&] { return changePoorPlaces(out.mesh, walls.repaired.unmended, limits, thinFrom); },
-        [](const LastResort& l) { return l.changes.merged + l.changes.divided; });
+        context, "last resort",
+        [&] {
+            lastMoves = moveLastPoints(out.mesh, walls.repaired.unmended, limits, thinFrom);
+            return changePoorPlaces(out.mesh, walls.repaired.unmended, limits, thinFrom);
+        },
+        [&](const LastResort& l) { return l.changes.merged + l.changes.divided + lastMoves; });
     auto firstLayerCell = static_cast<std::int32_t>(lattice->cellCount());
     if (!changed.cellOf.empty()) firstLayerCell = 1 + *std::max_element(changed.cellOf.begin(), changed.cellOf.begin() + firstLayerCell);
     const ClosedRims rims = stage(

@@ -1,6 +1,7 @@
 #include "i2b/quality/rim_shape.h"
 #include "i2b/core/sort_unique.h"
 #include "i2b/quality/face_tets.h"
+#include "i2b/quality/measures.h"
 #include "i2b/quality/mesh_geometry.h"
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,7 @@ using Index = std::size_t;
 constexpr double wanted = 0.03;      // share of a face that divides well enough
 constexpr double leastWeight = 0.08; // of a face between cells
 constexpr double withinLimit = 1;    // degrees: as far from the limit of non-orthogonality a face is good
+constexpr double leastDeterminant = 1.5e-3; // of cells that have so much at first: none falls below
 constexpr double turned = 1;         // cost of a face that points the wrong way
 constexpr int passes = 6, triesPerStep = 3;
 constexpr std::array<double, 3> steps{0.25, 0.1, 0.04}; // of h
@@ -35,6 +37,7 @@ class Shaper {
     Vec3 bestMove(const Column& c, double step);
     Vec3 centreOf(std::int32_t cell) const;
     double costOf(std::int32_t f) const;
+    double determinantOf(std::int32_t cell) const;
 
     PolyMesh& mesh_;
     Rows cellFaces_, pointFaces_;
@@ -42,6 +45,7 @@ class Shaper {
     std::vector<FaceShape> shapes_;
     std::vector<Vec3> centres_; // m, of cells
     std::vector<double> cost_;  // of faces
+    std::vector<double> least_, cellCost_; // of cells: determinant not to fall below; what is wanting, over that
 };
 
 Shaper::Shaper(PolyMesh& mesh, double leastCosine) : mesh_(mesh), cellFaces_(buildCellFaces(mesh)), pointFaces_(buildPointFaces(mesh)), leastCosine_(leastCosine) {
@@ -49,6 +53,8 @@ Shaper::Shaper(PolyMesh& mesh, double leastCosine) : mesh_(mesh), cellFaces_(bui
     for (Index f = 0; f < shapes_.size(); ++f) shapes_[f] = measureFace(mesh, static_cast<std::int32_t>(f));
     centres_.resize(Index(mesh.cells));
     for (std::int32_t c = 0; c < mesh.cells; ++c) centres_[Index(c)] = centreOf(c);
+    least_.resize(centres_.size()), cellCost_.assign(centres_.size(), 0);
+    for (std::int32_t c = 0; c < mesh.cells; ++c) least_[Index(c)] = std::min(leastDeterminant, determinantOf(c));
     cost_.resize(shapes_.size());
     for (Index f = 0; f < cost_.size(); ++f) cost_[f] = costOf(static_cast<std::int32_t>(f));
 }
@@ -70,13 +76,18 @@ Shaper::Column Shaper::columnOf(std::vector<std::int32_t> points, std::vector<do
 double Shaper::cost(const Column& c) const {
     double sum = 0;
     for (const std::int32_t f : c.judged) sum += cost_[Index(f)];
+    for (const std::int32_t cell : c.cells) sum += cellCost_[Index(cell)];
     return sum;
 }
 
 void Shaper::move(const Column& c, const Vec3& by) {
     for (Index i = 0; i < c.points.size(); ++i) mesh_.points[Index(c.points[i])] += by * c.share[i];
     for (const std::int32_t f : c.faces) shapes_[Index(f)] = measureFace(mesh_, f);
-    for (const std::int32_t cell : c.cells) centres_[Index(cell)] = centreOf(cell);
+    for (const std::int32_t cell : c.cells) {
+        centres_[Index(cell)] = centreOf(cell);
+        const double least = least_[Index(cell)];
+        cellCost_[Index(cell)] = std::max(0.0, 1 - determinantOf(cell) / (least + 1e-300));
+    }
     for (const std::int32_t f : c.judged) cost_[Index(f)] = costOf(f);
 }
 
@@ -118,6 +129,14 @@ Vec3 Shaper::centreOf(std::int32_t cell) const {
         volume += v, sum += (s.centre * 0.75 + middle * 0.25) * v;
     }
     return sum / volume;
+}
+
+double Shaper::determinantOf(std::int32_t cell) const {
+    std::array<FaceShape, 64> some;
+    const std::span<const std::int32_t> faces = cellFaces_[cell];
+    const Index n = std::min(faces.size(), some.size());
+    for (Index i = 0; i < n; ++i) some[i] = shapes_[Index(faces[i])];
+    return cellDeterminant(mesh_, faces.first(n), {some.data(), n}, Directions());
 }
 
 double Shaper::costOf(std::int32_t f) const {

@@ -266,6 +266,8 @@ Verdict RimStar::before(const RimZip& zip, const DictionaryLimits& limits) const
     return verdict;
 }
 
+Verdict RimStar::now(const RimZip& zip, const DictionaryLimits& limits) const { return judge(around(State::now, {}, zip.star), limits); }
+
 bool RimStar::isNoWorse(const RimZip& zip, const Verdict& before, const DictionaryLimits& limits) const {
     const LocalEdits::Surroundings after = around(State::now, {}, zip.star);
     return isNoWorse(before, after, limits) && hasNoMoreTwice(after.mesh, around(State::first, {}, zip.star).mesh);

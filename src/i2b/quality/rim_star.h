@@ -60,6 +60,7 @@ class RimStar {
     // between two of its faces?
     bool isSound(const RimZip& zip) const;
     Verdict before(const RimZip& zip, const DictionaryLimits& limits) const; // as it was at first
+    Verdict now(const RimZip& zip, const DictionaryLimits& limits) const;
     // As isNoWorse(), but that cells may be concave: wedges of several faces are.
     bool isNoWorse(const RimZip& zip, const Verdict& before, const DictionaryLimits& limits) const;
     // The cells and their neighbours as they are now; points: theirs, ascending.
