@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace i2b {
 namespace {
@@ -16,6 +17,7 @@ constexpr double leastWeight = 0.08; // of a face between cells
 constexpr double withinLimit = 1;    // degrees: as far from the limit of non-orthogonality a face is good
 constexpr double leastDeterminant = 1.5e-3; // of cells that have so much at first: none falls below
 constexpr double turned = 1;         // cost of a face that points the wrong way
+constexpr double worthwhile = 0.95;  // of what a pass finds wanting, is left
 constexpr int passes = 6, triesPerStep = 3;
 constexpr std::array<double, 3> steps{0.25, 0.1, 0.04}; // of h
 
@@ -29,15 +31,19 @@ class Shaper {
     };
     Shaper(PolyMesh& mesh, double leastCosine);
     Column columnOf(std::vector<std::int32_t> points, std::vector<double> share) const;
-    bool improve(const Column& c, double h); // whether it moved
+    void improve(const Column& c, double h);
+    double cost() const { return std::accumulate(cost_.begin(), cost_.end(), 0.0) + std::accumulate(cellCost_.begin(), cellCost_.end(), 0.0); } // of all
 
   private:
     double cost(const Column& c) const;
+    void place(const Column& c, const Vec3& by);
     void move(const Column& c, const Vec3& by);
+    double costAfter(const Column& c, const Vec3& by, double bound);
     Vec3 bestMove(const Column& c, double step);
     Vec3 centreOf(std::int32_t cell) const;
     double costOf(std::int32_t f) const;
     double determinantOf(std::int32_t cell) const;
+    double costOfCell(std::int32_t cell) const { return std::max(0.0, 1 - determinantOf(cell) / (least_[Index(cell)] + 1e-300)); }
 
     PolyMesh& mesh_;
     Rows cellFaces_, pointFaces_;
@@ -45,6 +51,8 @@ class Shaper {
     std::vector<FaceShape> shapes_;
     std::vector<Vec3> centres_; // m, of cells
     std::vector<double> cost_;  // of faces
+    std::vector<Vec3> saved_, savedCentres_;
+    std::vector<FaceShape> savedShapes_;
     std::vector<double> least_, cellCost_; // of cells: determinant not to fall below; what is wanting, over that
 };
 
@@ -80,15 +88,32 @@ double Shaper::cost(const Column& c) const {
     return sum;
 }
 
-void Shaper::move(const Column& c, const Vec3& by) {
+void Shaper::place(const Column& c, const Vec3& by) {
     for (Index i = 0; i < c.points.size(); ++i) mesh_.points[Index(c.points[i])] += by * c.share[i];
     for (const std::int32_t f : c.faces) shapes_[Index(f)] = measureFace(mesh_, f);
-    for (const std::int32_t cell : c.cells) {
-        centres_[Index(cell)] = centreOf(cell);
-        const double least = least_[Index(cell)];
-        cellCost_[Index(cell)] = std::max(0.0, 1 - determinantOf(cell) / (least + 1e-300));
-    }
+    for (const std::int32_t cell : c.cells) centres_[Index(cell)] = centreOf(cell);
+}
+
+void Shaper::move(const Column& c, const Vec3& by) {
+    place(c, by);
+    for (const std::int32_t cell : c.cells) cellCost_[Index(cell)] = costOfCell(cell);
     for (const std::int32_t f : c.judged) cost_[Index(f)] = costOf(f);
+}
+
+// What a move would cost, or more than the bound where it costs more; all is as it was afterwards.
+double Shaper::costAfter(const Column& c, const Vec3& by, double bound) {
+    saved_.clear(), savedShapes_.clear(), savedCentres_.clear();
+    for (const std::int32_t p : c.points) saved_.push_back(mesh_.points[Index(p)]);
+    for (const std::int32_t f : c.faces) savedShapes_.push_back(shapes_[Index(f)]);
+    for (const std::int32_t cell : c.cells) savedCentres_.push_back(centres_[Index(cell)]);
+    place(c, by);
+    double sum = 0;
+    for (Index i = 0; i < c.cells.size() && sum <= bound; ++i) sum += costOfCell(c.cells[i]);
+    for (Index i = 0; i < c.judged.size() && sum <= bound; ++i) sum += costOf(c.judged[i]);
+    for (Index i = 0; i < c.points.size(); ++i) mesh_.points[Index(c.points[i])] = saved_[i];
+    for (Index i = 0; i < c.faces.size(); ++i) shapes_[Index(c.faces[i])] = savedShapes_[i];
+    for (Index i = 0; i < c.cells.size(); ++i) centres_[Index(c.cells[i])] = savedCentres_[i];
+    return sum;
 }
 
 // Along an axis, to and fro; none where no such move is better.
@@ -98,24 +123,19 @@ Vec3 Shaper::bestMove(const Column& c, double step) {
     for (int d = 0; d < 6; ++d) {
         const double by = d & 1 ? -step : step;
         const Vec3 move = d / 2 == 0 ? Vec3{by, 0, 0} : d / 2 == 1 ? Vec3{0, by, 0} : Vec3{0, 0, by};
-        this->move(c, move);
-        if (const double now = cost(c); now < best) best = now, way = move;
-        this->move(c, move * -1.0);
+        if (const double now = costAfter(c, move, best); now < best) best = now, way = move;
     }
     return way;
 }
 
-bool Shaper::improve(const Column& c, double h) {
-    bool any = false;
+void Shaper::improve(const Column& c, double h) {
     for (const double step : steps) {
         for (int tries = 0; tries < triesPerStep && cost(c) > 0; ++tries) {
             const Vec3 way = bestMove(c, step * h);
             if (way == Vec3{}) break;
             move(c, way);
-            any = true;
         }
     }
-    return any;
 }
 
 Vec3 Shaper::centreOf(std::int32_t cell) const {
@@ -176,10 +196,12 @@ std::vector<std::pair<std::int32_t, Vec3>> shapeZip(const RimStar& star, const R
     }
     sortUnique(moved);
     const std::vector<Vec3> before(around.mesh.points.begin(), around.mesh.points.end());
-    for (int pass = 0; pass < passes; ++pass) {
-        bool any = false;
-        for (const Shaper::Column& c : columns) any = shaper.improve(c, zip.h) || any;
-        if (!any) break;
+    double left = shaper.cost();
+    for (int pass = 0; pass < passes && left > 0; ++pass) {
+        for (const Shaper::Column& c : columns) shaper.improve(c, zip.h);
+        const double now = shaper.cost();
+        if (now > worthwhile * left) break;
+        left = now;
     }
     std::vector<std::pair<std::int32_t, Vec3>> places;
     for (const std::int32_t p : moved)
