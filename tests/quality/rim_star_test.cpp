@@ -53,6 +53,15 @@ struct Joined {
     std::vector<std::int32_t> cells(const RimMove& move) const { return star.cellsAt(move.keep, move.gone, cellBelow(move.keep)); }
 };
 
+// The block with so many points, its cells closed and outside in nowhere.
+void expectWhole(const PolyMesh& mesh, std::size_t points) {
+    EXPECT_EQ(mesh.validate(), "");
+    EXPECT_EQ(mesh.points.size(), points);
+    const QualityReport quality = measureQuality(mesh);
+    EXPECT_EQ(quality.negativeVolumeCells + quality.openCells + quality.wrongOrientedFaces, 0);
+    EXPECT_NEAR(quality.totalVolume, 64, 1e-12);
+}
+
 TEST(RimStar, TakesTheCellsOfBothPoints) {
     Joined j;
     EXPECT_EQ(j.mesh.validate(), "");
@@ -81,10 +90,7 @@ TEST(RimStar, JoinsAcrossFacesUntilTheyAreGone) {
     EXPECT_EQ(j.mesh.validate(), "");
     EXPECT_EQ(j.mesh.faces(), faces - 1);
     EXPECT_EQ(j.mesh.patches[1].count, walls - 1);
-    EXPECT_EQ(j.mesh.points.size(), 123u);
-    const QualityReport quality = measureQuality(j.mesh);
-    EXPECT_EQ(quality.negativeVolumeCells + quality.openCells + quality.wrongOrientedFaces, 0);
-    EXPECT_NEAR(quality.totalVolume, 64, 1e-12);
+    expectWhole(j.mesh, 123);
 }
 
 TEST(RimStar, RefusesWhatLeavesNoSurface) {
@@ -153,10 +159,7 @@ TEST(RimStar, ZipsTwoFacesToOneWedge) {
     EXPECT_EQ(j.mesh.validate(), "");
     EXPECT_EQ(j.mesh.cells, cells - 1);
     EXPECT_EQ(j.mesh.patches[1].count, walls - 2);
-    EXPECT_EQ(j.mesh.points.size(), 123u);
-    const QualityReport quality = measureQuality(j.mesh);
-    EXPECT_EQ(quality.negativeVolumeCells + quality.openCells + quality.wrongOrientedFaces, 0);
-    EXPECT_NEAR(quality.totalVolume, 64, 1e-12);
+    expectWhole(j.mesh, 123);
 }
 
 TEST(RimStar, RefusesZipsWhoseRowsDoNotMeet) {

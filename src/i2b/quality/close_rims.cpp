@@ -203,18 +203,17 @@ void RimCloser::seekRest(ClosedRims& out) {
         parallelFor(places.size(), [&](Index i) {
             if (const auto node = nodeInNeed(places[i])) changes[i] = find(*node);
         }, 1);
-        std::vector<std::int32_t> touched; // cells that are not as they were when the changes were judged
+        std::vector<bool> isTouched(Index(mesh_.cells)); // cells that are not as they were when the changes were judged
+        bool any = false;
         for (const std::optional<Change>& change : changes) {
-            if (!change || std::ranges::any_of(change->star, [&](std::int32_t c) { return std::ranges::binary_search(touched, c); })) continue;
-            const std::vector<std::int32_t> around = star_.withNeighbours(change->star);
-            const auto middle = static_cast<std::ptrdiff_t>(touched.size());
-            touched.insert(touched.end(), around.begin(), around.end());
-            std::inplace_merge(touched.begin(), touched.begin() + middle, touched.end());
+            if (!change || std::ranges::any_of(change->star, [&](std::int32_t c) { return isTouched[Index(c)]; })) continue;
+            for (const std::int32_t c : star_.withNeighbours(change->star)) isTouched[Index(c)] = true;
+            any = true;
             star_.apply(change->move);
             anyJoined_ = anyJoined_ || change->move.gone >= 0;
             out.moved += change->move.gone < 0;
         }
-        if (touched.empty()) break;
+        if (!any) break;
     }
 }
 

@@ -164,8 +164,6 @@ void RowFinder::meetCorners() {
 
 } // namespace
 
-std::int32_t RimRows::partner(const Wall& wall, std::int32_t point) const { return nodes[nodePlace(wall, point)].partner; }
-
 RimRows findRimRows(const PolyMesh& mesh, const Wall& wall, const Front& front, const FeatureIndex& rims) { return RowFinder(mesh, wall, front, rims).run(); }
 
 Vec3 betweenOnRim(const RimRows::Node& a, const RimRows::Node& b, const FeatureIndex& rims) {

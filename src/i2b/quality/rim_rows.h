@@ -4,7 +4,6 @@
 #include "i2b/core/vec.h"
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -29,8 +28,6 @@ struct RimRows {
     std::vector<std::uint8_t> isBefore;     // per wall face: all its nodes go to a rim
     std::vector<Edge> across;               // between two such faces
     std::unordered_map<std::int32_t, std::vector<std::int32_t>> facesOf; // per point that moves, places in wall.faces, ascending
-
-    std::int32_t partner(const Wall& wall, std::int32_t point) const;
 };
 
 // wall: its nodes follow each other as the vertices of front do. rims: of the geometry, alone.

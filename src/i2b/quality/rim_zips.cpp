@@ -2,7 +2,6 @@
 #include "i2b/core/parallel.h"
 #include "i2b/core/sort_unique.h"
 #include "i2b/fit/features.h"
-#include "i2b/front/front.h"
 #include "i2b/quality/fit_wall.h"
 #include "i2b/quality/rim_rows.h"
 #include <algorithm>

@@ -13,7 +13,7 @@ constexpr int shapings = 8; // rounds in which columns are moved
 class Zipper {
   public:
     Zipper(RimStar& star, std::vector<RimZip> zips, std::int32_t cells, const DictionaryLimits& limits)
-        : star_(star), limits_(limits), zips_(std::move(zips)), before_(zips_.size()), isWorse_(zips_.size(), 0), isChanged_(Index(cells), 1) {}
+        : star_(star), limits_(limits), zips_(std::move(zips)), before_(zips_.size()), isWorse_(zips_.size(), 0), isChanged_(Index(cells), true) {}
     std::int64_t run();
 
   private:
@@ -21,7 +21,7 @@ class Zipper {
     void shapeWorse();
     bool openWorse();
     void markChanged(const RimZip& zip) {
-        for (const std::int32_t c : star_.withNeighbours(zip.star)) isChanged_[Index(c)] = 1;
+        for (const std::int32_t c : star_.withNeighbours(zip.star)) isChanged_[Index(c)] = true;
     }
 
     RimStar& star_;
@@ -29,17 +29,17 @@ class Zipper {
     std::vector<RimZip> zips_;
     std::vector<Verdict> before_;         // per zip
     std::vector<std::uint8_t> isWorse_;   // per zip
-    std::vector<std::uint8_t> isChanged_; // per cell: since zips there were judged
+    std::vector<bool> isChanged_;         // per cell: since zips there were judged
     std::map<std::int32_t, Vec3> places_; // m, of points of columns that were moved
 };
 
 // Of zips whose cells have changed since.
 void Zipper::judgeChanged() {
     parallelFor(zips_.size(), [&](Index i) {
-        if (std::ranges::none_of(zips_[i].star, [&](std::int32_t c) { return isChanged_[Index(c)] != 0; })) return;
+        if (std::ranges::none_of(zips_[i].star, [&](std::int32_t c) { return isChanged_[Index(c)]; })) return;
         isWorse_[i] = !star_.isSound(zips_[i]) || !star_.isNoWorse(zips_[i], before_[i], limits_);
     }, 1);
-    std::ranges::fill(isChanged_, 0);
+    isChanged_.assign(isChanged_.size(), false);
 }
 
 // Those that share no cell side by side, the others in later turns, in their order.
@@ -49,16 +49,14 @@ void Zipper::shapeWorse() {
         if (isWorse_[i] && star_.isSound(zips_[i])) left.push_back(i);
     while (!left.empty()) {
         std::vector<Index> turn, later;
-        std::vector<std::int32_t> taken;
+        std::vector<bool> isTaken(isChanged_.size());
         for (const Index i : left) {
             const std::vector<std::int32_t> around = star_.withNeighbours(zips_[i].star);
-            if (std::ranges::any_of(around, [&](std::int32_t c) { return std::ranges::binary_search(taken, c); })) {
+            if (std::ranges::any_of(around, [&](std::int32_t c) { return isTaken[Index(c)]; })) {
                 later.push_back(i);
                 continue;
             }
-            const auto middle = static_cast<std::ptrdiff_t>(taken.size());
-            taken.insert(taken.end(), around.begin(), around.end());
-            std::inplace_merge(taken.begin(), taken.begin() + middle, taken.end());
+            for (const std::int32_t c : around) isTaken[Index(c)] = true;
             turn.push_back(i);
         }
         std::vector<std::vector<std::pair<std::int32_t, Vec3>>> places(turn.size());
