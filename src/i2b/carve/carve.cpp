@@ -1,5 +1,6 @@
 #include "i2b/carve/carve.h"
 #include "i2b/carve/extrudable.h"
+#include "i2b/carve/gaps.h"
 #include "i2b/carve/passages.h"
 #include "i2b/core/checksum.h"
 #include "i2b/core/error.h"
@@ -92,10 +93,12 @@ Carved carveRegion(const CellGrid& grid, const CutCells& cut, const Regions& reg
     result.islands = dropIslands(result.cells, grid);
     if (options.passages) {
         const Room room(grid, cut, regions, region, result.cells, taken, index);
-        const std::vector<Place> given = passageCells(room);
-        give(result.cells, given);
+        const std::vector<Place> inPassages = passageCells(room);
+        give(result.cells, inPassages);
+        const std::vector<Place> inGaps = gapCells(room);
+        give(result.cells, inGaps);
         const ShapingSummary shaped = makeExtrudable(result.cells, grid, index, &room);
-        result.given = given.size() + shaped.added;
+        result.given = inPassages.size() + inGaps.size() + shaped.added;
         result.front = shaped.removed;
     } else {
         result.front = makeExtrudable(result.cells, grid, index, nullptr).removed;

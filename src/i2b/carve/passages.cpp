@@ -1,5 +1,4 @@
 #include "i2b/carve/passages.h"
-#include "i2b/grid/mask_ops.h"
 #include <algorithm>
 
 namespace i2b {
@@ -13,33 +12,6 @@ struct Step { // a cell that has been reached
 using Steps = std::vector<Step>; // in order of cells
 
 bool contains(const Steps& steps, const Place& c) { return std::binary_search(steps.begin(), steps.end(), Step{c, 0}); }
-
-// Candidates that share a face with a kept cell of their level.
-std::vector<Place> besideKept(const Room& room) {
-    std::vector<Place> places;
-    for (std::size_t l = 0; l < room.candidates().size(); ++l) {
-        const std::vector<const MaskLeaf*> leaves = leavesOf(std::as_const(*room.candidates()[l]));
-        constexpr std::size_t chunk = 64;
-        std::vector<std::vector<Place>> parts((leaves.size() + chunk - 1) / chunk);
-        parallelChunks(leaves.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const Index3 o = toIndex(leaves[i]->origin());
-                bits::forEach(leafBits(leaves[i]), [&](int x, int y, int z) {
-                    const Place cell{static_cast<std::int32_t>(l), {o[0] + x, o[1] + y, o[2] + z}};
-                    if (room.isKept(cell)) return;
-                    for (int d = 0; d < 6; ++d) {
-                        if (!room.isKept(faceNeighbour(cell, d))) continue;
-                        parts[c].push_back(cell);
-                        return;
-                    }
-                });
-            }
-        });
-        for (const std::vector<Place>& part : parts) places.insert(places.end(), part.begin(), part.end());
-    }
-    std::sort(places.begin(), places.end());
-    return places;
-}
 
 // Candidates beside the last step that are new.
 std::vector<Place> besides(const Room& room, const Steps& last, const Steps& reached) {

@@ -1,5 +1,7 @@
 #include "i2b/carve/room.h"
 #include "i2b/grid/mask_ops.h"
+#include <algorithm>
+#include <cmath>
 
 namespace i2b {
 namespace {
@@ -53,15 +55,35 @@ bool Room::touchesTaken(const Place& c) const {
     return false;
 }
 
-bool Room::has(const Place& c, double& clearance) const {
-    const ClosestPoint near = index_.closest(centre(c), h(c));
-    clearance = near ? near.distance : h(c);
-    if (clearance < options_.rim * h(c) || touchesTaken(c)) return false;
+WallsAround Room::wallsAround(const Place& c) const {
+    const Vec3 from = centre(c);
+    const ClosestPoint near = index_.closest(from, options_.gapWidth * h(c));
+    if (!near) return {options_.gapWidth, {}, false};
+    WallsAround walls{near.distance / h(c), normalized(near.point - from), false};
+    const SegmentHit hit = index_.firstHit(from, from - walls.toWall * (options_.gapWidth * h(c)));
+    walls.isOpposite = hit && std::abs(dot(index_.normal(hit.triangle), walls.toWall)) > options_.facing;
+    return walls;
+}
+
+bool Room::isKeptAt(const Place& c, const Vec3& offset) const {
+    Place at = c;
+    for (std::size_t axis = 0; axis < 3; ++axis) at.at[axis] += static_cast<std::int32_t>(std::floor(0.5 + offset[int(axis)]));
+    return isKept(at);
+}
+
+bool Room::isFree(const Place& c) const {
+    if (touchesTaken(c)) return false;
     for (int d = 0; d < 6; ++d) {
         const Place n = faceNeighbour(c, d);
         if (isForeign(n) && isWay(c, n)) return false;
     }
     return true;
+}
+
+bool Room::has(const Place& c, double& clearance) const {
+    const ClosestPoint near = index_.closest(centre(c), h(c));
+    clearance = near ? near.distance : h(c);
+    return clearance >= options_.rim * h(c) && isFree(c);
 }
 
 // Balls about three points of the way: the ones at its ends belong to cells that have room.
@@ -83,6 +105,32 @@ bool Room::mayJoin(const Place& c, double& clearance) const {
         joined = joined || isWay(n, c);
     }
     return joined;
+}
+
+std::vector<Place> besideKept(const Room& room) {
+    std::vector<Place> places;
+    for (std::size_t l = 0; l < room.candidates().size(); ++l) {
+        const std::vector<const MaskLeaf*> leaves = leavesOf(std::as_const(*room.candidates()[l]));
+        constexpr std::size_t chunk = 64;
+        std::vector<std::vector<Place>> parts((leaves.size() + chunk - 1) / chunk);
+        parallelChunks(leaves.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const Index3 o = toIndex(leaves[i]->origin());
+                bits::forEach(leafBits(leaves[i]), [&](int x, int y, int z) {
+                    const Place cell{static_cast<std::int32_t>(l), {o[0] + x, o[1] + y, o[2] + z}};
+                    if (room.isKept(cell)) return;
+                    for (int d = 0; d < 6; ++d) {
+                        if (!room.isKept(faceNeighbour(cell, d))) continue;
+                        parts[c].push_back(cell);
+                        return;
+                    }
+                });
+            }
+        });
+        for (const std::vector<Place>& part : parts) places.insert(places.end(), part.begin(), part.end());
+    }
+    std::sort(places.begin(), places.end());
+    return places;
 }
 
 } // namespace i2b

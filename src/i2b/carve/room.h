@@ -12,7 +12,16 @@ struct RoomOptions {
     double rim = 0.2;                          // of h: least distance from a given cell's centre to the geometry
     double centre = 0.24;                      // of h: the same where others are reached from it
     std::array<double, 3> way{0.25, 0.25, 0.2}; // of h: least distance to the geometry at quarters of a way between centres
+    double gapWidth = 2;                       // of h: from a cell's centre to a wall that faces the nearest one
+    double facing = 0.5;                       // cosine of the angle to its normal, at most, under which a wall is met that faces another
     std::uint64_t pocketCells = 64;            // an unpainted region of so many cells is part of a passage, not a room of its own
+};
+
+// Walls about the centre of a cell.
+struct WallsAround {
+    double clearance = 0;  // of h: to the nearest wall
+    Vec3 toWall;           // unit vector; zero where no wall is near
+    bool isOpposite = false; // beyond the centre another wall faces that one
 };
 
 // Cells beside another region, in sight of it, have no room: paint decides which regions are meshed. Some quarter of a
@@ -27,6 +36,15 @@ class Room {
     bool isCandidate(const Place& c) const { return isOn(candidates_, c) || isOn(painted_, c); }
     bool isKept(const Place& c) const { return isOn(kept_, c); }
 
+    bool isForeign(const Place& c) const { // an uncut cell of another region, or of none
+        return grid_.levels[std::size_t(c.level)].cells->isValueOn(toCoord(c.at)) && !isKept(c) && !isCandidate(c);
+    }
+    // The wall opposite may be up to gapWidth away from the centre.
+    WallsAround wallsAround(const Place& c) const;
+    // Is the cell kept, of c's level, that holds the place at this offset (of h) from c's centre?
+    bool isKeptAt(const Place& c, const Vec3& offset) const;
+    // Is no cell near that belongs to others?
+    bool isFree(const Place& c) const;
     // Has the cell room? clearance: m, from its centre to the geometry, as far as an edge.
     bool has(const Place& c, double& clearance) const;
     // May cells be reached from one with this clearance?
@@ -42,9 +60,6 @@ class Room {
     Vec3 centre(const Place& c) const { return grid_.lattice.cellBox(grid_.levels[std::size_t(c.level)].level, c.at).centre(); }
     double h(const Place& c) const { return grid_.lattice.h(grid_.levels[std::size_t(c.level)].level); }
     bool isOn(const std::vector<Mask::Ptr>& masks, const Place& c) const { return masks[std::size_t(c.level)]->isValueOn(toCoord(c.at)); }
-    bool isForeign(const Place& c) const { // an uncut cell of another region
-        return grid_.levels[std::size_t(c.level)].cells->isValueOn(toCoord(c.at)) && !isKept(c) && !isCandidate(c);
-    }
     bool touchesTaken(const Place& c) const;
 
     const CellGrid& grid_;
@@ -53,6 +68,9 @@ class Room {
     RoomOptions options_;
     std::vector<Mask::Ptr> painted_, candidates_;
 };
+
+// Candidates that share a face with a kept cell of their level, in order.
+std::vector<Place> besideKept(const Room& room);
 
 inline Place faceNeighbour(Place c, int direction) { // direction: 2 * axis (+ 1 for the high side)
     c.at[static_cast<std::size_t>(direction >> 1)] += direction & 1 ? 1 : -1;

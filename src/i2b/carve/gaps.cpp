@@ -1,0 +1,152 @@
+#include "i2b/carve/gaps.h"
+#include "i2b/carve/min_cut.h"
+#include "i2b/core/parallel.h"
+#include <algorithm>
+#include <cmath>
+
+namespace i2b {
+namespace {
+
+constexpr double pricesPerFace = 1000; // prices of the cut are whole numbers
+constexpr double tie = 0.05;           // of a face: what is as good filled as not is filled
+
+// A removed cell that has been looked at. Where its centre lies in no gap it is closed on all sides.
+struct GapCell {
+    Place cell;
+    double clearance = 0;      // of h
+    std::uint8_t open = 0;     // bit a direction: a kept neighbour there would have a face into the gap
+    std::uint8_t walled = 0;   // bit a direction: a wall stands between the two centres
+    bool fits = false;         // may be given back
+    friend bool operator<(const GapCell& a, const GapCell& b) { return a.cell < b.cell; }
+};
+
+bool has(std::uint8_t bits, int direction) { return (bits >> direction & 1) != 0; }
+
+class GapFiller {
+  public:
+    GapFiller(const Room& room, const GapOptions& options) : room_(room), options_(options) {}
+    std::vector<Place> run();
+
+  private:
+    GapCell look(const Place& c) const;
+    std::vector<Place> look(const std::vector<Place>& places);
+    void partWalled();
+    const GapCell* find(const Place& c) const {
+        const auto at = std::lower_bound(cells_.begin(), cells_.end(), GapCell{c});
+        return at != cells_.end() && at->cell == c ? &*at : nullptr;
+    }
+    // Would a kept cell in this direction from a removed one have a face into a gap?
+    bool isOpen(const Place& removed, int direction) const {
+        const GapCell* cell = find(removed);
+        return cell && has(cell->open, direction);
+    }
+    std::vector<Place> cut() const;
+
+    const Room& room_;
+    const GapOptions options_;
+    std::vector<GapCell> cells_; // in order
+};
+
+GapCell GapFiller::look(const Place& c) const {
+    GapCell cell{c};
+    const WallsAround walls = room_.wallsAround(c);
+    cell.clearance = walls.clearance;
+    if (!walls.isOpposite || room_.isKeptAt(c, walls.toWall * -options_.across)) return cell;
+    cell.fits = walls.clearance >= options_.least;
+    for (int d = 0; d < 6; ++d) {
+        const Place n = faceNeighbour(c, d);
+        if (room_.isWallBetween(c, n)) {
+            cell.walled |= std::uint8_t(1 << d);
+            cell.fits = cell.fits && !room_.isKept(n);
+            continue;
+        }
+        // However narrow the crack that leads there: paint decides which regions are meshed.
+        cell.fits = cell.fits && !room_.isForeign(n);
+        const double away = walls.toWall[d >> 1] * (d & 1 ? -1 : 1); // of the wall from that neighbour
+        if (away < options_.ahead) cell.open |= std::uint8_t(1 << d);
+    }
+    cell.fits = cell.fits && room_.isFree(c);
+    return cell;
+}
+
+// Gives the places to look at next: beside cells that may be given back.
+std::vector<Place> GapFiller::look(const std::vector<Place>& places) {
+    std::vector<GapCell> looked(places.size());
+    parallelFor(places.size(), [&](std::size_t i) { looked[i] = look(places[i]); }, 32);
+    const std::size_t before = cells_.size();
+    cells_.insert(cells_.end(), looked.begin(), looked.end());
+    std::inplace_merge(cells_.begin(), cells_.begin() + std::ptrdiff_t(before), cells_.end());
+    std::vector<Place> next;
+    for (const GapCell& cell : looked) {
+        for (int d = 0; cell.fits && d < 6; ++d) {
+            const Place n = faceNeighbour(cell.cell, d);
+            if (!has(cell.walled, d) && room_.isCandidate(n) && !room_.isKept(n) && !find(n)) next.push_back(n);
+        }
+    }
+    std::sort(next.begin(), next.end());
+    next.erase(std::unique(next.begin(), next.end()), next.end());
+    return next;
+}
+
+// Of two cells with a wall between them the one with more room may be given back.
+void GapFiller::partWalled() {
+    std::vector<std::uint8_t> goes(cells_.size(), 0);
+    parallelFor(cells_.size(), [&](std::size_t i) {
+        const GapCell& cell = cells_[i];
+        for (int d = 0; cell.fits && d < 6; ++d) {
+            const GapCell* other = has(cell.walled, d) ? find(faceNeighbour(cell.cell, d)) : nullptr;
+            if (!other || !other->fits) continue;
+            if (cell.clearance < other->clearance || (cell.clearance == other->clearance && other->cell < cell.cell)) goes[i] = 1;
+        }
+    });
+    for (std::size_t i = 0; i < cells_.size(); ++i) cells_[i].fits = cells_[i].fits && !goes[i];
+}
+
+std::vector<Place> GapFiller::cut() const {
+    std::vector<const GapCell*> items;
+    for (const GapCell& cell : cells_) {
+        if (cell.fits) items.push_back(&cell);
+    }
+    const auto itemOf = [&](const Place& c) { // items.size() for one that is none
+        const auto at = std::lower_bound(items.begin(), items.end(), c, [](const GapCell* a, const Place& b) { return a->cell < b; });
+        return at != items.end() && (*at)->cell == c ? std::size_t(at - items.begin()) : items.size();
+    };
+    constexpr auto face = static_cast<long>(pricesPerFace);
+    MinCut cut(items.size());
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        const GapCell& cell = *items[i];
+        const double squeeze = std::max(0.0, options_.ample - cell.clearance) / options_.ample;
+        cut.addTaken(i, std::lround(pricesPerFace * options_.squeezed * squeeze));
+        cut.addLeft(i, std::lround(pricesPerFace * tie));
+        for (int d = 0; d < 6; ++d) {
+            const Place n = faceNeighbour(cell.cell, d);
+            const long into = isOpen(n, d ^ 1) ? face : 0, from = has(cell.open, d) ? face : 0;
+            if (const std::size_t other = itemOf(n); other < items.size()) {
+                if (other > i) cut.addPair(i, other, into, from);
+            } else if (room_.isKept(n)) {
+                cut.addLeft(i, from);
+            } else {
+                cut.addTaken(i, into);
+            }
+        }
+    }
+    const std::vector<unsigned char> taken = cut.solve();
+    std::vector<Place> given;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        if (taken[i]) given.push_back(items[i]->cell);
+    }
+    return given;
+}
+
+std::vector<Place> GapFiller::run() {
+    std::vector<Place> places = besideKept(room_);
+    for (int step = 0; step < options_.depth && !places.empty(); ++step) places = look(places);
+    partWalled();
+    return cut();
+}
+
+} // namespace
+
+std::vector<Place> gapCells(const Room& room, const GapOptions& options) { return GapFiller(room, options).run(); }
+
+} // namespace i2b
