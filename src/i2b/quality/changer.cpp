@@ -30,7 +30,8 @@ Verdict judge(const LocalEdits::Surroundings& around, const DictionaryLimits& di
     for (const std::int64_t count : {r.negativeVolumeCells, r.openCells, r.wrongOrientedFaces, r.highlySkewFaces, r.smallDeterminantCells,
                                      r.lowWeightFaces, r.lowVolumeRatioFaces, r.highAspectRatioCells, r.tetErrors})
         v.counts[n++] = count;
-    v.faces = r.dictionaryFaces, v.concave = r.concaveCells;
+    // checkMesh takes no skewer face on a boundary than inside, the dictionary does.
+    v.faces = r.dictionaryFaces + r.highlySkewFaces, v.concave = r.concaveCells;
     v.nonOrthogonality = r.maxNonOrthogonality, v.skewness = r.maxSkewness;
     return v;
 }

@@ -10,7 +10,8 @@ namespace i2b {
 
 struct Verdict {
     std::array<std::int64_t, dictionaryLimitCount + 9> counts{}; // of all that a check names, but for faces twice there
-    std::int64_t faces = 0, concave = 0;                          // faces beyond limits, cells
+    std::int64_t faces = 0;   // beyond limits, with those of a boundary that only checkMesh finds too skew
+    std::int64_t concave = 0; // cells
     double nonOrthogonality = 0, skewness = 0;                    // degrees; the greatest
 };
 

@@ -17,7 +17,9 @@ constexpr Index most = 50; // faces: where more are left it is not single points
 RimZip placeAround(const PolyMesh& mesh, const Rows& cellFaces, const RimStar& star, std::int32_t face) {
     RimZip place;
     std::vector<std::int32_t> points, held;
-    for (const std::int32_t cell : {mesh.owner[Index(face)], mesh.neighbour[Index(face)]}) {
+    std::vector<std::int32_t> sides{mesh.owner[Index(face)]};
+    if (face < mesh.internalFaces()) sides.push_back(mesh.neighbour[Index(face)]);
+    for (const std::int32_t cell : sides) {
         std::vector<std::int32_t> own;
         for (const std::int32_t f : cellFaces[cell]) own.insert(own.end(), mesh.face(f).begin(), mesh.face(f).end());
         sortUnique(own);
@@ -49,7 +51,6 @@ std::int64_t moveLastPoints(PolyMesh& mesh, const std::vector<std::int32_t>& poo
     std::map<std::int32_t, Vec3> places; // m, of points that stay moved
     std::int64_t helped = 0;
     for (const std::int32_t face : faces) {
-        if (face >= mesh.internalFaces()) continue;
         const RimZip place = placeAround(mesh, cellFaces, star, face);
         const Verdict before = star.now(place, limits);
         std::map<std::int32_t, Vec3> all = places;
