@@ -62,7 +62,15 @@ TEST_P(ShakenBlocks, FacesBeyondHelpAreThoseThatStayPoor) {
     EXPECT_EQ(mesh.checksum(), sum);
     EXPECT_TRUE(std::ranges::includes(poor, left));
     EXPECT_LT(left.size(), poor.size());
-    // Limits that nothing breaks leave none.
+}
+
+// Limits that nothing breaks leave none but those that checkMesh finds too skew; here are none.
+TEST(LastResort, LimitsThatNothingBreaksLeaveNone) {
+    const PolyMesh mesh = shaken(1, 0.4);
+    ASSERT_EQ(measureQuality(mesh).highlySkewFaces, 0);
+    const std::vector<std::int32_t> poor = poorFaces(mesh);
+    const Rows cellFaces = buildCellFaces(mesh);
+    ASSERT_FALSE(facesBeyondHelp(mesh, cellFaces, poor, {}).empty());
     DictionaryLimits none;
     none.nonOrthogonality = 180, none.pyramidVolume = none.tetQuality = -1e30, none.concavity = 180, none.internalSkewness = none.boundarySkewness = -1;
     none.faceWeight = none.volumeRatio = none.twist = none.determinant = -1;

@@ -30,7 +30,7 @@ Verdict judge(const LocalEdits::Surroundings& around, const DictionaryLimits& di
     for (const std::int64_t count : {r.negativeVolumeCells, r.openCells, r.wrongOrientedFaces, r.highlySkewFaces, r.smallDeterminantCells,
                                      r.lowWeightFaces, r.lowVolumeRatioFaces, r.highAspectRatioCells, r.tetErrors})
         v.counts[n++] = count;
-    // checkMesh takes no skewer face on a boundary than inside, the dictionary does.
+    // checkMesh allows faces of a boundary no more skewness than others, the dictionary does.
     v.faces = r.dictionaryFaces + r.highlySkewFaces, v.concave = r.concaveCells;
     v.nonOrthogonality = r.maxNonOrthogonality, v.skewness = r.maxSkewness;
     return v;
