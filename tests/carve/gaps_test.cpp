@@ -1,6 +1,8 @@
 // Proves: a gap of about a cell between walls askew to the lattice is filled from end to end, where passages alone fill some
-// of it; a lone wall, a crack and a crack into another region change nothing.
+// of it; a front is shaped there without taking cells that have room; a lone wall, a crack and a crack into another region
+// change nothing.
 #include "carve/kept_checks.h"
+#include "i2b/carve/extrudable.h"
 #include "i2b/carve/gaps.h"
 #include "i2b/carve/passages.h"
 #include "i2b/grid/mask_ops.h"
@@ -104,6 +106,35 @@ TEST(Gaps, AreFilledWherePassagesFillSome) {
         }
     }
     EXPECT_LE(after, before / 2);
+}
+
+// How many cells with the room that others are given for does a front cost that prisms can be extruded from?
+int roomyCellsTaken(const Filled& f, const RoomOptions& options) {
+    std::vector<Mask::Ptr> kept;
+    for (const Mask::Ptr& mask : f.kept) kept.push_back(std::make_shared<Mask>(*mask));
+    const Room room(f.painted.grid, f.painted.cut, f.painted.regions, f.region, kept, f.taken, *f.painted.index, options);
+    makeExtrudable(kept, f.painted.grid, *f.painted.index, &room);
+    int taken = 0;
+    for (std::size_t l = 0; l < kept.size(); ++l) {
+        for (const Place& c : placesOf({differenceOf(*f.kept[l], *kept[l])})) taken += room.wallsAround({static_cast<std::int32_t>(l), c.at}).clearance >= options.rim;
+    }
+    return taken;
+}
+
+// Cells with little room come in, tucked away between walls, where others would have to go.
+TEST(Gaps, FrontsInThemKeepCellsThatHaveRoom) {
+    RoomOptions roomy;
+    roomy.squeezed = roomy.rim;
+    int with = 0, without = 0;
+    for (const double angle : {0.1, 0.2, 0.35}) {
+        for (const double width : {1.2 * h, 1.3 * h, 1.5 * h, 1.6 * h}) {
+            const Filled f(blocks({{{-0.9, -0.7, -0.5}, {0.9, 0.7, -width / 2}}, {{-0.9, -0.7, width / 2}, {0.9, 0.2, 0.5}}, {{-0.5, 0.3, width / 2}, {0.8, 0.7, 0.5}}}, angle));
+            with += roomyCellsTaken(f, {});
+            without += roomyCellsTaken(f, roomy);
+        }
+    }
+    EXPECT_GT(without, 20);
+    EXPECT_LT(with, 0.8 * without);
 }
 
 TEST(Gaps, OfALoneBlockThereAreNone) {

@@ -133,19 +133,6 @@ CarvedAtRandom::CarvedAtRandom(unsigned seed, const Index3& count, int levels, i
     kept = carve(grid, cut, regions, *index, options);
 }
 
-namespace {
-
-// "" or what a given cell with this centre lacks: room, or at least walls on both sides that leave no more.
-std::string roomFault(const Vec3& centre, double h, const SurfaceIndex& index) {
-    const ClosestPoint near = index.closest(centre);
-    if (near.distance >= RoomOptions().rim * h) return "";
-    if (near.distance < GapOptions().least * h) return "has no room";
-    const Vec3 across = (centre - near.point) * (RoomOptions().gapWidth * h / near.distance);
-    return index.firstHit(centre, centre + across) ? "" : "has little room in no gap";
-}
-
-} // namespace
-
 std::string wallBetweenKept(const CellGrid& grid, const CutCells& cut, const KeptCells& kept, const SurfaceIndex& index) {
     for (std::size_t l = 0; l < grid.levels.size(); ++l) {
         const LevelTriple level = grid.levels[l].level;
@@ -153,7 +140,7 @@ std::string wallBetweenKept(const CellGrid& grid, const CutCells& cut, const Kep
             if (!cut.levels[l]->isValueOn(it.getCoord())) continue;
             const Index3 c = toIndex(it.getCoord());
             const Vec3 centre = grid.lattice.cellBox(level, c).centre();
-            if (const std::string fault = roomFault(centre, grid.lattice.h(level), index); !fault.empty()) return fmt::format("cell {} {} {} {}", c[0], c[1], c[2], fault);
+            if (index.closest(centre, RoomOptions().squeezed * grid.lattice.h(level))) return fmt::format("cell {} {} {} has no room", c[0], c[1], c[2]);
             for (std::size_t d = 0; d < 6; ++d) {
                 Index3 n = c;
                 n[d / 2] += d % 2 ? 1 : -1;

@@ -80,9 +80,13 @@ bool Room::isFree(const Place& c) const {
     return true;
 }
 
-bool Room::has(const Place& c, double& clearance) const {
+double Room::distance(const Place& c) const {
     const ClosestPoint near = index_.closest(centre(c), h(c));
-    clearance = near ? near.distance : h(c);
+    return near ? near.distance : h(c);
+}
+
+bool Room::has(const Place& c, double& clearance) const {
+    clearance = distance(c);
     return clearance >= options_.rim * h(c) && isFree(c);
 }
 
@@ -95,14 +99,25 @@ bool Room::isWay(const Place& a, const Place& b) const {
     return true;
 }
 
+// Beyond an edge that the flow goes around, cells that reach far into the solid cost the edge: they are told by how many are kept
+// around.
+bool Room::isInTheOpen(const Place& c) const {
+    int kept = 0;
+    for (int i = 0; i < 27; ++i) kept += isKept({c.level, {c.at[0] + i % 3 - 1, c.at[1] + i / 3 % 3 - 1, c.at[2] + i / 9 - 1}});
+    return kept > options_.tuckedAway;
+}
+
 bool Room::mayJoin(const Place& c, double& clearance) const {
-    if (!isCandidate(c) || isKept(c) || !has(c, clearance)) return false;
+    if (!isCandidate(c) || isKept(c)) return false;
+    clearance = distance(c);
+    if (clearance < options_.squeezed * h(c) || !isFree(c)) return false;
+    if (clearance < options_.rim * h(c) && isInTheOpen(c)) return false;
     bool joined = false;
     for (int d = 0; d < 6; ++d) {
         const Place n = faceNeighbour(c, d);
-        if (!isKept(n)) continue;
-        if (isWallBetween(n, c)) return false;
-        joined = joined || isWay(n, c);
+        const bool kept = isKept(n);
+        if ((kept || isForeign(n)) && isWallBetween(n, c) == kept) return false;
+        joined = joined || kept;
     }
     return joined;
 }

@@ -12,6 +12,8 @@ struct RoomOptions {
     double rim = 0.2;                          // of h: least distance from a given cell's centre to the geometry
     double centre = 0.24;                      // of h: the same where others are reached from it
     std::array<double, 3> way{0.25, 0.25, 0.2}; // of h: least distance to the geometry at quarters of a way between centres
+    double squeezed = 0.05;                    // of h: least distance from a cell's centre to the geometry where a front needs it
+    int tuckedAway = 13;                       // kept ones of the 26 cells around, at most, for a cell with less room than rim
     double gapWidth = 2;                       // of h: from a cell's centre to a wall that faces the nearest one
     double facing = 0.5;                       // cosine of the angle to its normal, at most, under which a wall is met that faces another
     std::uint64_t pocketCells = 64;            // an unpainted region of so many cells is part of a passage, not a room of its own
@@ -53,7 +55,8 @@ class Room {
     bool isWay(const Place& a, const Place& b) const;
     // Does geometry cross the straight line between the centres?
     bool isWallBetween(const Place& a, const Place& b) const { return bool(index_.firstHit(centre(a), centre(b))); }
-    // Is there a way from a kept neighbour, and no wall to any of them? The cell can then join them.
+    // May the cell join a kept neighbour, where the front is the better for it? No wall stands between it and any of them, and one does
+    // to all that belong to others; with less room than others have it must not lie in the open. clearance: m, as of has().
     bool mayJoin(const Place& c, double& clearance) const;
 
   private:
@@ -61,6 +64,8 @@ class Room {
     double h(const Place& c) const { return grid_.lattice.h(grid_.levels[std::size_t(c.level)].level); }
     bool isOn(const std::vector<Mask::Ptr>& masks, const Place& c) const { return masks[std::size_t(c.level)]->isValueOn(toCoord(c.at)); }
     bool touchesTaken(const Place& c) const;
+    bool isInTheOpen(const Place& c) const;
+    double distance(const Place& c) const; // m, from its centre to the geometry, as far as an edge
 
     const CellGrid& grid_;
     const std::vector<Mask::Ptr>&kept_, &taken_;
