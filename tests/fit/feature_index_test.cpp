@@ -1,4 +1,5 @@
-// Proves: the fit sees every line that a mesh should show, sharp, named or rim, and no other edge of the graph.
+// Proves: the fit sees every line that a mesh should show, sharp, named or rim, and no other edge of the graph, and which of them a
+// node stands all but on.
 #include "i2b/fit/features.h"
 #include "i2b/geometry/rims.h"
 #include <gtest/gtest.h>
@@ -38,6 +39,22 @@ TEST(FeatureIndex, namedLinesAndRims) {
     options.parts.clear();
     options.lines = {{{0.25, 0.25, 0}, {0.75, 0.25, 0}}, {{0, 1}}, {}};
     EXPECT_TRUE(seesLineAt(buildFeatureGraph(s, options), drawn));
+}
+
+// Nodes up to a fifth of a cell beside a line stand all but on it; what a rim needs is done later.
+TEST(FeatureIndex, linesUponWhichNodesStand) {
+    const Surface s = sheets();
+    FeatureOptions options;
+    options.parts = {"left"};
+    const FeatureIndex named(buildFeatureGraph(s, options));
+    EXPECT_TRUE(lineUpon(named, {1.015, 0.5, 0.005}, 0.1).found);
+    EXPECT_FALSE(lineUpon(named, {1.03, 0.5, 0}, 0.1).found);
+    options.parts.clear();
+    FeatureGraph graph = buildFeatureGraph(s, options);
+    markRims(graph, SurfaceIndex(s), options, 0.1);
+    const FeatureIndex rims(graph);
+    EXPECT_TRUE(rims.closestLine({0.5, 1.01, 0}, 0.1).isRim);
+    EXPECT_FALSE(lineUpon(rims, {0.5, 1.01, 0}, 0.1).found);
 }
 
 } // namespace

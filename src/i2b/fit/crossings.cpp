@@ -192,7 +192,11 @@ WallMarks markWall(const Band& band, const SurfaceIndex& index, const FeatureInd
     marks.feet.resize(band.walls), marks.onLine.assign(band.walls, 0), marks.tangents.resize(band.walls);
     parallelFor(band.walls, [&](std::size_t n) {
         marks.feet[n] = footOf(band, index, x, n);
-        if (snaps[n].kind == SnapKind::none) return;
+        if (snaps[n].kind == SnapKind::none) {
+            const FeatureIndex::Line line = lineUpon(features, x[n], band.h[n]);
+            if (line.found && marks.feet[n].found) marks.onLine[n] = 1, marks.tangents[n] = line.tangent;
+            return;
+        }
         const FeatureIndex::Line line = snapLine(index, features, snaps[n], x[n], band.h[n]);
         marks.onLine[n] = norm(line.point - x[n]) <= onLine * band.h[n];
         if (marks.onLine[n] && snaps[n].kind != SnapKind::corner) marks.tangents[n] = line.tangent;

@@ -19,6 +19,7 @@ constexpr double onLine = 0.05;   // of h: so far from a sharp edge the middle o
 const double alongLine = std::cos(20 * degree);
 constexpr double reach = 2.2; // of h: no node is pulled farther to a feature,
 constexpr double otherReach = 0.8; // or to one of another surface, as the top of a step is at its foot, where a nearer one may be
+constexpr double upon = 0.2;  // of h: so near to a line a node stands all but on it
 constexpr double apart = 0.2; // of h: nodes beside each other keep so far apart
 constexpr double linesApart = 0.3; // of h: and so do lines beside each other to have a node each
 constexpr double nextReach = 0.3;  // of h: so far a node is pulled to a line beside the one that its neighbour is on,
@@ -158,6 +159,7 @@ FeatureIndex::FeatureIndex(const FeatureGraph& graph) {
         if (!(e.kinds & lineKinds)) continue;
         lines_.triangles.push_back({e.a, e.b, e.b});
         lines_.partOf.push_back(0);
+        isRim_.push_back((e.kinds & bitOf(EdgeKind::rim)) != 0);
     }
     for (std::uint32_t c : graph.corners) {
         corners_.triangles.push_back({c, c, c});
@@ -176,6 +178,7 @@ FeatureIndex::Line FeatureIndex::closestLine(const Vec3& q, double radius) const
     line.point = c.point;
     line.tangent = normalized(lines_.points[t[1]] - lines_.points[t[0]]);
     line.found = line.tangent != Vec3{};
+    line.isRim = isRim_[c.triangle] != 0;
     return line;
 }
 
@@ -199,6 +202,11 @@ FeatureIndex::Line snapLine(const SurfaceIndex& index, const FeatureIndex& featu
         line.point = c ? c.point : snap.point; // which the geometry has confirmed
     }
     return line;
+}
+
+FeatureIndex::Line lineUpon(const FeatureIndex& features, const Vec3& x, double h) {
+    const FeatureIndex::Line line = features.closestLine(x, upon * h);
+    return line.isRim ? FeatureIndex::Line{} : line;
 }
 
 std::size_t snapToFeatures(const Band& band, const Front& front, const SurfaceIndex& index, const FeatureIndex& features,

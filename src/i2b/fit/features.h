@@ -22,6 +22,7 @@ class FeatureIndex {
     struct Line {
         Vec3 point, tangent; // tangent: unit
         bool found = false;
+        bool isRim = false; // where a sheet ends
     };
     Line closestLine(const Vec3& q, double radius) const;
     ClosestPoint closestCorner(const Vec3& q, double radius) const; // triangle: number among the corners
@@ -29,6 +30,7 @@ class FeatureIndex {
 
   private:
     Surface lines_, corners_; // segments and points as degenerate triangles
+    std::vector<std::uint8_t> isRim_; // of lines_
     std::unique_ptr<SurfaceIndex> lineIndex_, cornerIndex_;
 };
 
@@ -44,6 +46,10 @@ inline constexpr double mostBentAway = 0.3; // of h: so far the geometry may ben
 
 // Where on its feature a snapped node at x should be, and the feature's direction there. h: m, the size of the cells around.
 FeatureIndex::Line snapLine(const SurfaceIndex& index, const FeatureIndex& features, const Snap& snap, const Vec3& x, double h);
+
+// The line that a wall node stands all but on, though nothing holds it there: cuts may end at it, and it is brought there if that
+// can be. None where a sheet ends: its rim is dealt with later (quality/zip_rims.h).
+FeatureIndex::Line lineUpon(const FeatureIndex& features, const Vec3& x, double h);
 
 // Snaps further nodes, nearest crossings first, one end of an edge at most; those already in snaps stay.
 // Gives how many were added.

@@ -147,6 +147,10 @@ void seekOnce(Front& front, const Band& band, const SurfaceIndex& index, const F
     snapFolds(band, front, index, features, x, summary.wishes);
     summary.inserted = insertVertices(front, band, index, features, x, snaps);
     summary.wishes.resize(snaps.size());
+    parallelFor(band.walls, [&](std::size_t n) {
+        if (summary.wishes[n].kind != SnapKind::none) return;
+        if (const FeatureIndex::Line line = lineUpon(features, x[n], band.h[n]); line.found) summary.wishes[n] = {SnapKind::line, line.point, line.tangent};
+    });
     for (std::size_t n = 0; n < band.walls; ++n) {
         if (snaps[n].kind != SnapKind::none) summary.wishes[n] = {};
     }
