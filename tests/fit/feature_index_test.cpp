@@ -49,7 +49,9 @@ TEST(FeatureIndex, linesUponWhichNodesStand) {
     const FeatureIndex named(buildFeatureGraph(s, options));
     EXPECT_TRUE(lineUpon(named, {1.015, 0.5, 0.005}, 0.1).found);
     EXPECT_FALSE(lineUpon(named, {1.03, 0.5, 0}, 0.1).found);
-    options.parts.clear();
+    options.lines = {{{1.05, 0, 0}, {1.05, 1, 0}}, {{0, 1}}, {}}; // half a cell beside it
+    EXPECT_FALSE(lineUpon(FeatureIndex(buildFeatureGraph(s, options)), {1.015, 0.5, 0.005}, 0.1).found);
+    options.parts.clear(), options.lines = {};
     FeatureGraph graph = buildFeatureGraph(s, options);
     markRims(graph, SurfaceIndex(s), options, 0.1);
     const FeatureIndex rims(graph);

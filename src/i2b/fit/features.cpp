@@ -19,7 +19,9 @@ constexpr double onLine = 0.05;   // of h: so far from a sharp edge the middle o
 const double alongLine = std::cos(20 * degree);
 constexpr double reach = 2.2; // of h: no node is pulled farther to a feature,
 constexpr double otherReach = 0.8; // or to one of another surface, as the top of a step is at its foot, where a nearer one may be
-constexpr double upon = 0.2;  // of h: so near to a line a node stands all but on it
+constexpr double upon = 0.2;  // of h: so near to a line a node stands all but on it,
+constexpr double alone = 0.6; // unless another one runs so near,
+constexpr double aside = 0.1; // at least so far beside it
 constexpr double apart = 0.2; // of h: nodes beside each other keep so far apart
 constexpr double linesApart = 0.3; // of h: and so do lines beside each other to have a node each
 constexpr double nextReach = 0.3;  // of h: so far a node is pulled to a line beside the one that its neighbour is on,
@@ -182,6 +184,15 @@ FeatureIndex::Line FeatureIndex::closestLine(const Vec3& q, double radius) const
     return line;
 }
 
+bool FeatureIndex::hasOtherBeside(const Line& line, double radius, double aside) const {
+    const auto isBeside = [&](std::uint32_t other) {
+        const auto& t = lines_.triangles[other];
+        const Vec3 way = closestPointOnTriangle(line.point, lines_.points[t[0]], lines_.points[t[1]], lines_.points[t[1]]) - line.point;
+        return norm2(way - line.tangent * dot(way, line.tangent)) > aside * aside;
+    };
+    return bool(lineIndex_->closest(line.point, radius, isBeside));
+}
+
 ClosestPoint FeatureIndex::closestCorner(const Vec3& q, double radius) const {
     return cornerIndex_ ? cornerIndex_->closest(q, radius) : ClosestPoint{};
 }
@@ -206,7 +217,7 @@ FeatureIndex::Line snapLine(const SurfaceIndex& index, const FeatureIndex& featu
 
 FeatureIndex::Line lineUpon(const FeatureIndex& features, const Vec3& x, double h) {
     const FeatureIndex::Line line = features.closestLine(x, upon * h);
-    return line.isRim ? FeatureIndex::Line{} : line;
+    return line.found && !line.isRim && !features.hasOtherBeside(line, alone * h, aside * h) ? line : FeatureIndex::Line{};
 }
 
 std::size_t snapToFeatures(const Band& band, const Front& front, const SurfaceIndex& index, const FeatureIndex& features,

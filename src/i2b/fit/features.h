@@ -25,6 +25,8 @@ class FeatureIndex {
         bool isRim = false; // where a sheet ends
     };
     Line closestLine(const Vec3& q, double radius) const;
+    // Comes another line within radius of this one's point, and nowhere so near to its tangent as aside?
+    bool hasOtherBeside(const Line& line, double radius, double aside) const;
     ClosestPoint closestCorner(const Vec3& q, double radius) const; // triangle: number among the corners
     bool isCrowded(const ClosestPoint& corner, double radius) const; // is another one within radius of it?
 
@@ -48,7 +50,7 @@ inline constexpr double mostBentAway = 0.3; // of h: so far the geometry may ben
 FeatureIndex::Line snapLine(const SurfaceIndex& index, const FeatureIndex& features, const Snap& snap, const Vec3& x, double h);
 
 // The line that a wall node stands all but on, though nothing holds it there: cuts may end at it, and it is brought there if that
-// can be. None where a sheet ends: its rim is dealt with later (quality/zip_rims.h).
+// can be. None beside a second one, and none where a sheet ends: its rim is dealt with later (quality/zip_rims.h).
 FeatureIndex::Line lineUpon(const FeatureIndex& features, const Vec3& x, double h);
 
 // Snaps further nodes, nearest crossings first, one end of an edge at most; those already in snaps stay.
