@@ -87,7 +87,8 @@ void expectSoundMesh(const ToFront& run) {
     EXPECT_EQ(q.openCells + q.openCellsByEdges + q.unusedPoints + q.duplicateFaces + q.faultyFaceVertices, 0);
 }
 
-// No node is snapped to the border: nearly every face across it is cut, all else stays.
+// No node is snapped to the border: nearly every face across it is cut, all else stays. Fewer are needed where nodes stand all but
+// on it, at which cuts may end.
 TEST(Insert, DividesEdgesAcrossABorderOfFlushParts) {
     Unsnapped run(flushHalves());
     const Front old = run.front;
@@ -111,7 +112,7 @@ TEST(Insert, DividesEdgesAcrossABorderOfFlushParts) {
         }
         EXPECT_LT(a * b, 0); // crosses
     }
-    EXPECT_LE(8 * elsewhere, n);
+    EXPECT_LE(6 * elsewhere, n);
     ASSERT_EQ(run.front.firstInserted(), old.front.size());
     for (std::size_t v = 0; v < old.front.size(); ++v) { // nothing else moves
         EXPECT_EQ(old.front[v], run.front.front[v]);
