@@ -11,8 +11,9 @@ namespace {
 
 // What the wall has reached, as fractions: no run may fall below captured (of the resolvable sharp edges) and nodes (within
 // 0.01 h of the geometry), nor rise above tilted. The aim is 0.99 of the edges on every shape: bars are raised as the fit
-// improves, and not lowered (but that of the wedge inside, 0.92 until quads were cut across bends and moved for their tetrahedra). From the worst of six runs of the benchmark (three poses, two sizes): captured less 0.03, nodes less
-// 0.02 and at most 0.98, tilted and 0.02 more.
+// improves, and not lowered (but that of the wedge inside, 0.92 until quads were cut across bends and moved for their
+// tetrahedra). From the worst of six runs of the benchmark (three poses, two sizes): captured less 0.03, nodes less 0.02 and
+// at most 0.98, tilted and 0.02 more.
 struct Bar {
     const char* shape;
     Side side;
@@ -30,11 +31,11 @@ const Bar bars[] = {
     {"step", Side::inside, 0.96, 0.97, 0.02},
     {"crossed-boxes", Side::outside, 0.94, 0.97, 0.04},
     {"pipe-tee", Side::outside, 0.97, 0.97, 0.02},
-    {"wedge-20", Side::outside, 0.93, 0.96, 0.02},
+    {"wedge-20", Side::outside, 0.95, 0.97, 0.02},
     {"wedge-20", Side::inside, 0.91, 0.97, 0.09},
-    {"half-cell-slab", Side::outside, 0.85, 0.96, 0.02},
-    {"plate", Side::outside, 0.89, 0.92, 0.02},
-    {"free-sheet", Side::outside, 0.93, 0.96, 0.03},
+    {"half-cell-slab", Side::outside, 0.85, 0.97, 0.02},
+    {"plate", Side::outside, 0.92, 0.95, 0.02},
+    {"free-sheet", Side::outside, 0.94, 0.96, 0.03},
     {"nested-spheres", Side::inside, 0.00, 0.98, 0.02},
     {"cracked-cube", Side::outside, 0.97, 0.97, 0.02},
     {"cracked-cube", Side::inside, 0.97, 0.97, 0.02},
@@ -44,17 +45,17 @@ const Bar bars[] = {
     {"rhombic-dodecahedron", Side::inside, 0.96, 0.98, 0.02},
     {"deltoidal-icositetrahedron", Side::outside, 0.97, 0.97, 0.02},
     {"deltoidal-icositetrahedron", Side::inside, 0.97, 0.97, 0.02},
-    {"triakis-tetrahedron", Side::outside, 0.96, 0.97, 0.02},
-    {"triakis-tetrahedron", Side::inside, 0.95, 0.98, 0.02},
+    {"triakis-tetrahedron", Side::outside, 0.97, 0.97, 0.02},
+    {"triakis-tetrahedron", Side::inside, 0.96, 0.98, 0.02},
     {"stella-octangula", Side::outside, 0.95, 0.97, 0.02},
-    {"stella-octangula", Side::inside, 0.90, 0.97, 0.05},
+    {"stella-octangula", Side::inside, 0.93, 0.97, 0.03},
     {"two-tetrahedra", Side::outside, 0.95, 0.97, 0.02},
-    {"small-stellated-dodecahedron", Side::outside, 0.95, 0.97, 0.02},
+    {"small-stellated-dodecahedron", Side::outside, 0.96, 0.97, 0.02},
     {"small-stellated-dodecahedron", Side::inside, 0.95, 0.97, 0.02},
     {"gear", Side::outside, 0.96, 0.97, 0.02},
-    {"gear", Side::inside, 0.92, 0.97, 0.04},
-    {"helical-gear", Side::outside, 0.95, 0.97, 0.02},
-    {"helical-gear", Side::inside, 0.95, 0.97, 0.04},
+    {"gear", Side::inside, 0.95, 0.97, 0.03},
+    {"helical-gear", Side::outside, 0.96, 0.97, 0.02},
+    {"helical-gear", Side::inside, 0.95, 0.97, 0.03},
 };
 
 // Fewer samples say nothing of how well edges are followed: they are those beside one notch. The two edges of the half-cell slab's rim
