@@ -139,6 +139,16 @@ void releaseUnreached(const Band& band, const SurfaceIndex& index, const Feature
     });
 }
 
+// Whether a face around node n has two other nodes that are held: n there too would make it flat.
+bool hasLineBeside(const Front& front, const std::vector<Snap>& snaps, std::size_t n) {
+    for (const auto face : front.mesh.vf_range(FrontMesh::VertexHandle(static_cast<int>(n)))) {
+        int held = 0;
+        for (const auto v : front.mesh.fv_range(face)) held += static_cast<std::size_t>(v.idx()) != n && snaps[static_cast<std::size_t>(v.idx())].kind != SnapKind::none;
+        if (held >= 2) return true;
+    }
+    return false;
+}
+
 // Nodes that should be on a feature besides, and vertices where edges still cross one.
 void seekOnce(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features, std::vector<Vec3>& x,
               std::vector<Snap>& snaps, FitSummary& summary) {
@@ -148,7 +158,7 @@ void seekOnce(Front& front, const Band& band, const SurfaceIndex& index, const F
     summary.inserted = insertVertices(front, band, index, features, x, snaps);
     summary.wishes.resize(snaps.size());
     parallelFor(band.walls, [&](std::size_t n) {
-        if (summary.wishes[n].kind != SnapKind::none) return;
+        if (summary.wishes[n].kind != SnapKind::none || hasLineBeside(front, snaps, n)) return;
         if (const FeatureIndex::Line line = lineUpon(features, x[n], band.h[n]); line.found) summary.wishes[n] = {SnapKind::line, line.point, line.tangent};
     });
     for (std::size_t n = 0; n < band.walls; ++n) {
