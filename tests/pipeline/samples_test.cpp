@@ -1,6 +1,6 @@
 // Proves, on every built-in geometry: what leaves generate() keeps to 65 degrees of non-orthogonality and a skewness of 4,
 // no cell is wrong, no face breaks a limit of the mesh quality dictionary, and plain checkMesh has nothing to say; limits that the
-// user sets are worked for.
+// user sets are worked for, and those that no mesh reaches cost nothing but a word.
 #include "i2b/geometry/write_stl.h"
 #include "i2b/program/generate.h"
 #include "i2b/samples/sample.h"
@@ -67,6 +67,29 @@ TEST(SampleLimits, OfTheUserAreWorkedFor) {
     const QualityReport q = meshOf({"missile", 0.05, false}, limits).report.quality.value();
     EXPECT_LE(q.maxNonOrthogonality, 52);
     EXPECT_EQ(q.dictionaryFaces, 0);
+}
+
+// Else cells are merged without end, and what the mesh would keep to is lost with what it cannot.
+TEST(SampleLimits, OutOfReachAreNotedOnly) {
+    const SampleCase sphere{"sphere", 0.05, false};
+    const MeshResult plain = meshOf(sphere);
+    const struct {
+        const char* option;
+        double DictionaryLimits::*limit;
+        double value;
+    } cases[] = {{"max-non-orthogonality", &DictionaryLimits::nonOrthogonality, 1},   {"max-internal-skewness", &DictionaryLimits::internalSkewness, 0.01},
+                 {"max-internal-skewness", &DictionaryLimits::internalSkewness, -1}, {"min-face-weight", &DictionaryLimits::faceWeight, 0.499},
+                 {"min-volume-ratio", &DictionaryLimits::volumeRatio, 0.99},         {"min-determinant", &DictionaryLimits::determinant, 0.99},
+                 {"min-tet-quality", &DictionaryLimits::tetQuality, 0.9},            {"min-face-area", &DictionaryLimits::faceArea, 1}};
+    for (const auto& c : cases) {
+        DictionaryLimits limits;
+        limits.*c.limit = c.value;
+        const MeshResult result = meshOf(sphere, limits);
+        EXPECT_EQ(result.report.checksum, plain.report.checksum) << c.option;
+        const std::vector<std::string>& notes = result.cartesian->notes.messages;
+        ASSERT_EQ(std::ranges::count_if(notes, [&](const std::string& n) { return n.starts_with(c.option); }), 1) << c.option;
+        EXPECT_GT(result.report.quality->dictionaryFaces, 1000) << c.option; // beyond what was asked
+    }
 }
 
 // None may be added without a case here.

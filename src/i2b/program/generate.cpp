@@ -172,20 +172,23 @@ MeshResult generate(const Options& options, Context& context) {
     const DictionaryLimits limits = meshLimits(options.quality, c.field.minSize, plans.plans);
     if (limits.pyramidVolume != options.quality.pyramidVolume)
         notes.push_back(fmt::format("the limit of min-pyramid-volume, {:g} m3, is for larger cells than these: {:.2g} m3 is taken", options.quality.pyramidVolume, limits.pyramidVolume));
-    Walls walls = makeWalls({c, *lattice, features, plans, options.fit, limits}, out.mesh, context);
+    const DictionaryLimits fallback = meshLimits({}, c.field.minSize, plans.plans);
+    Walls walls = makeWalls({c, *lattice, features, plans, options.fit, limits, fallback}, out.mesh, context);
+    const DictionaryLimits& reached = walls.reach.limits;
+    notes.insert(notes.end(), walls.reach.givenUp.begin(), walls.reach.givenUp.end());
     const std::int32_t thinFrom = walls.laid.stack.areFlat() ? static_cast<std::int32_t>(lattice->cellCount()) : out.mesh.cells;
     std::int64_t lastMoves = 0;
     const LastResort changed = stage(
         context, "last resort",
         [&] {
-            lastMoves = moveLastPoints(out.mesh, walls.repaired.unmended, limits, thinFrom);
-            return changePoorPlaces(out.mesh, walls.repaired.unmended, limits, thinFrom);
+            lastMoves = moveLastPoints(out.mesh, walls.repaired.unmended, reached, thinFrom);
+            return changePoorPlaces(out.mesh, walls.repaired.unmended, reached, thinFrom);
         },
         [&](const LastResort& l) { return l.changes.merged + l.changes.divided + lastMoves; });
     auto firstLayerCell = static_cast<std::int32_t>(lattice->cellCount());
     if (!changed.cellOf.empty()) firstLayerCell = 1 + *std::max_element(changed.cellOf.begin(), changed.cellOf.begin() + firstLayerCell);
     const ClosedRims rims = stage(
-        context, "rims", [&] { return closeRims(out.mesh, walls.front, features, *c.index, limits, firstLayerCell); },
+        context, "rims", [&] { return closeRims(out.mesh, walls.front, features, *c.index, reached, firstLayerCell); },
         [](const ClosedRims& r) { return static_cast<std::int64_t>(r.lostNodes.size()) + r.moved; });
     dropPlaces(walls.fitted.offCauses, rims.lostNodes), dropPlaces(walls.repaired.movedWalls, rims.lostNodes);
     out.report = reportOf(c, options, context);

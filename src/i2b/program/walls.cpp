@@ -31,8 +31,9 @@ RepairSummary assembleAndRepair(const WallInput& in, Walls& walls, PolyMesh& mes
     return stage(
         context, "repair",
         [&] {
+            walls.reach = limitsInReach(mesh, in.limits, in.fallback);
             const auto repaired = [&](bool mayThinLeave) {
-                return repair(mesh, walls.front, in.lattice, layers, startThickness, guide, in.limits, mayThinLeave);
+                return repair(mesh, walls.front, in.lattice, layers, startThickness, guide, walls.reach.limits, mayThinLeave);
             };
             const auto core = static_cast<std::int32_t>(in.lattice.cellCount());
             RepairSummary r = repaired(false);

@@ -5,6 +5,7 @@
 #include "i2b/front/front.h"
 #include "i2b/layers/lay_on.h"
 #include "i2b/program/generate.h"
+#include "i2b/program/limits_in_reach.h"
 #include "i2b/quality/repair.h"
 
 namespace i2b {
@@ -15,7 +16,8 @@ struct WallInput {
     const FeatureGraph& features;
     const WallPlans& plans;
     const FitOptions& fit;
-    const DictionaryLimits& limits; // of faces
+    const DictionaryLimits& limits; // of faces, asked for,
+    const DictionaryLimits& fallback; // and those taken where these are out of reach
 };
 
 struct Walls {
@@ -23,6 +25,7 @@ struct Walls {
     FitSummary fitted;
     LaidLayers laid;
     RepairSummary repaired;         // movedWalls: by layers, too
+    LimitsInReach reach;            // what the mesh was repaired to
 };
 
 // mesh: with them; no cell of negative volume and no face of wrong orientation, or an Error of kind internal. Where cells cannot be made

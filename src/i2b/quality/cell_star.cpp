@@ -131,7 +131,8 @@ void CellStar::judgeFace(Index i, Badness& out) {
     const std::int32_t owner = mesh_.owner[Index(face.face)];
     const CellMoments& own = momentsOf(face.owner, owner);
     if (face.face >= mesh_.internalFaces()) {
-        add(out, std::min(wrong, faceSkewness(mesh_, face.face, shape, own.centre, nullptr, counts * limits_.skewness) / limits_.skewness));
+        const double most = std::min(limits_.skewness, limits_.boundarySkewness);
+        add(out, std::min(wrong, faceSkewness(mesh_, face.face, shape, own.centre, nullptr, counts * most) / most));
         return;
     }
     const std::int32_t neighbour = mesh_.neighbour[Index(face.face)];

@@ -85,7 +85,8 @@ void MeshFaults::measureCells() {
 void MeshFaults::measureFaces() {
     constexpr double margin = 1.01;
     QuadBounds bounds = openQuadBounds;
-    bounds.cosine = severeCosine_, bounds.weight = limits_.faceWeight, bounds.ratio = limits_.volumeRatio, bounds.skewness = limits_.skewness;
+    bounds.cosine = severeCosine_, bounds.weight = limits_.faceWeight, bounds.ratio = limits_.volumeRatio;
+    bounds.skewness = std::min(limits_.skewness, limits_.boundarySkewness);
     bounds.pyramid3 = std::max(0.0, 3 * limits_.pyramidVolume * margin);
     bounds.tetShape = margin * clearShare * clearShare / 4;
     bounds.twist = leastTwist + clearShare;
@@ -135,7 +136,8 @@ void MeshFaults::measureFaceAt(std::int32_t face) {
         flags = (values.ortho < severeCosine_ ? nonOrthogonal : 0) | (values.weight < limits_.faceWeight ? lowWeight : 0) |
                 (values.ratio < limits_.volumeRatio ? lowRatio : 0);
     }
-    if (faceSkewness(mesh_, face, shape, own.centre, neighbour, limits_.skewness) > limits_.skewness) flags |= skew;
+    const double mostSkew = neighbour ? limits_.skewness : std::min(limits_.skewness, limits_.boundarySkewness);
+    if (faceSkewness(mesh_, face, shape, own.centre, neighbour, mostSkew) > mostSkew) flags |= skew;
     const double share = tetShare(mesh_, face, shape.centre, shape.area, own.centre, neighbour, doubtful);
     // Two things that are each well enough may leave tetrahedra of no quality.
     const auto isPoor = [&] {

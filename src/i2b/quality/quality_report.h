@@ -23,8 +23,9 @@ struct QualityLimits {
     double faceWeight = 0.05;
     double volumeRatio = 0.01;
     double smallVolume = 1e-300;     // m^3
-    double pyramidVolume = 0;        // m^3, of a face with a cell's centre: asked for by the repair, no check of checkMesh's,
-    double tetQuality = 0;           // as is this, of the tetrahedra of faces with centres of cells; 0: any
+    double boundarySkewness = 1e300; // of boundary faces, where it is less: asked for by the repair, no check of checkMesh's,
+    double pyramidVolume = 0;        // m^3, as is this, of a face with a cell's centre,
+    double tetQuality = 0;           // and this, of the tetrahedra of faces with centres of cells; 0: any
     double faceArea = 1e-300;        // m^2
     double edgeAlignment = 1e-6;
 };

@@ -29,7 +29,8 @@ QualityLimits strictLimits(const DictionaryLimits& asked) {
     const DictionaryBounds bounds(asked);
     QualityLimits limits;
     limits.nonOrthogonality = 0.9923 * std::min(limits.nonOrthogonality, asked.nonOrthogonality);
-    limits.skewness = 0.95 * std::min({limits.skewness, bounds.internalSkewness, bounds.boundarySkewness});
+    limits.boundarySkewness = 0.95 * std::min(limits.skewness, bounds.boundarySkewness);
+    limits.skewness = 0.95 * std::min(limits.skewness, bounds.internalSkewness);
     limits.faceWeight = 1.1 * std::max(limits.faceWeight, bounds.faceWeight);
     limits.volumeRatio = 2 * std::max(limits.volumeRatio, bounds.volumeRatio);
     limits.determinant = 1.5 * std::max(limits.determinant, bounds.determinant);
