@@ -43,6 +43,7 @@ RunReport sample() {
     r.regions[0].parts = {0};
     r.regions[0].box.add(Vec3{1, 2, 3});
     r.leaks = {{Vec3{1, 2, 3}, 0.5, "through body"}};
+    r.notes = {"a limit is out of reach"};
     r.checksum = "0123456789abcdef";
     return r;
 }
@@ -53,7 +54,7 @@ TEST(ReportWrite, HasTheContractsKeys) {
     EXPECT_THAT(keys(json),
                 testing::ElementsAre("program", "geometry", "threads", "sizes", "seconds", "peak_rss_bytes",
                                      "stages", "cells", "faces", "points", "wall_faces", "quality", "fit",
-                                     "layers", "patches", "regions", "leaks", "checksum"));
+                                     "layers", "patches", "regions", "leaks", "notes", "checksum"));
     EXPECT_THAT(keys(json["program"]), testing::ElementsAre("name", "version"));
     EXPECT_THAT(keys(json["geometry"]), testing::ElementsAre("files", "triangles", "parts"));
     EXPECT_THAT(keys(json["sizes"]), testing::ElementsAre("surface", "min", "max", "levels"));
@@ -105,6 +106,7 @@ TEST(ReportWrite, HasTheContractsKeys) {
     EXPECT_EQ(json["patches"][0]["faces"], 6);
     EXPECT_EQ(json["regions"][0]["parts"][0], "body");
     EXPECT_EQ(json["leaks"][0]["width"], 0.5);
+    EXPECT_EQ(json["notes"], Json({"a limit is out of reach"}));
     EXPECT_EQ(json["stages"][0]["items"], 100);
 }
 

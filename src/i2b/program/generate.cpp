@@ -210,6 +210,12 @@ MeshResult generate(const Options& options, Context& context) {
     return out;
 }
 
+std::vector<std::string> GridResult::allNotes() const {
+    std::vector<std::string> all = notes.messages;
+    all.insert(all.end(), field.notes.begin(), field.notes.end());
+    return all;
+}
+
 RunReport reportOf(const GridResult& r, const Options& options, const Context& context) {
     RunReport report;
     report.files = options.geometry.files;
@@ -223,6 +229,7 @@ RunReport reportOf(const GridResult& r, const Options& options, const Context& c
     report.cells = static_cast<std::int64_t>(r.grid.cellCount());
     report.regions = r.regions.table;
     report.leaks = r.regions.leaks;
+    report.notes = r.allNotes();
     return report;
 }
 

@@ -26,6 +26,8 @@ struct GridResult {
     CutCells cut;
     Regions regions;
     KeptCells kept; // empty levels where carving was not asked for
+
+    std::vector<std::string> allNotes() const; // of geometry and sizes
 };
 
 struct MeshResult {

@@ -26,8 +26,7 @@ void completeReport(RunReport& report, const Run& run, Clock::time_point start) 
 
 void printNotes(const GridResult& result, const Run& run) {
     if (run.quiet) return;
-    for (const auto* const notes : {&result.notes.messages, &result.field.notes})
-        for (const std::string& message : *notes) fmt::print(run.out, "note: {}\n", message);
+    for (const std::string& message : result.allNotes()) fmt::print(run.out, "note: {}\n", message);
 }
 
 void printEnd(const RunReport& report, const OutputOptions& output, const Run& run) {

@@ -41,6 +41,7 @@ struct RunReport {
     std::vector<Patch> patches;
     std::vector<Region> regions;
     std::vector<Leak> leaks;
+    std::vector<std::string> notes; // what was done otherwise than the input says, and why
     std::string checksum; // of the mesh, 16 hexadecimal digits
 };
 

@@ -170,6 +170,7 @@ std::string reportText(const RunReport& r) {
     json["patches"] = patches;
     json["regions"] = regions;
     json["leaks"] = leaks;
+    json["notes"] = r.notes;
     json["checksum"] = r.checksum;
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
