@@ -34,6 +34,18 @@ TEST(SummaryText, NamesTheWorstPlaces) {
     EXPECT_THAT(summaryText(report), HasSubstr("\n1 place where the wall is over 0.01 h off: 1 node at (1.5 0 -2) on part0, up to 0.25 h, sheet_between\n"));
 }
 
+// Checks that fail by name and number, those that only warn not; and what is beyond the limits of the dictionary.
+TEST(SummaryText, NamesTheChecksThatFail) {
+    RunReport report = sample();
+    QualityReport& q = report.quality.emplace();
+    EXPECT_THAT(summaryText(report), HasSubstr("\nquality: all checks pass; "));
+    EXPECT_THAT(summaryText(report), Not(HasSubstr("beyond the limits")));
+    q.checks = {{"nonOrthoFaces", 4, false, {}, {}}, {"concaveCells", 20, true, {}, {}}, {"lowWeightFaces", 1, true, {}, {}}};
+    q.failedChecks = 2, q.dictionaryFaces = 5;
+    EXPECT_THAT(summaryText(report), HasSubstr("\nquality: all checks of checkMesh -allGeometry pass but that of 20 concaveCells, 1 lowWeightFaces; "));
+    EXPECT_THAT(summaryText(report), HasSubstr("; 5 faces beyond the limits\n"));
+}
+
 // Cells too thin for plain checkMesh: how many, where, and what would pass.
 TEST(SummaryText, SaysWhereLayersAreTooThin) {
     RunReport report = sample();

@@ -45,6 +45,16 @@ std::string offGeometryLine(const OffPlaces& places) {
                        fmt::join(worst, "; "), places.total > static_cast<std::int64_t>(worst.size()) ? "; ..." : "");
 }
 
+// By the names of the sets that checkMesh -allGeometry writes.
+std::string verdict(const QualityReport& q) {
+    std::vector<std::string> failing;
+    for (const QualityCheck& check : q.checks)
+        if (check.fails) failing.push_back(fmt::format("{} {}", check.count, check.name));
+    if (q.ok()) return "all checks pass";
+    if (failing.empty()) return fmt::format("{} of the checks of checkMesh -allGeometry fail", q.failedChecks);
+    return fmt::format("all checks of checkMesh -allGeometry pass but that of {}", fmt::join(failing, ", "));
+}
+
 // Layers much lower than they are wide fail a check of plain checkMesh, which no point can mend: says what would.
 std::string aspectLine(const RunReport& report) {
     const QualityReport& q = *report.quality;
@@ -110,9 +120,9 @@ std::string summaryText(const RunReport& report) {
                     report.points, report.seconds, static_cast<double>(report.peakRssBytes) * 1e-6);
     if (const auto& q = report.quality)
         text += fmt::format(
-            "quality: {}; non-orthogonality {:.1f} at most, {:.1f} on average; skewness {:.2f}\n",
-            q->ok() ? "all checks pass" : fmt::format("{} checks fail (see report.json)", q->failedChecks),
-            q->maxNonOrthogonality, q->meanNonOrthogonality, q->maxSkewness);
+            "quality: {}; non-orthogonality {:.1f} at most, {:.1f} on average; skewness {:.2f}{}\n", verdict(*q),
+            q->maxNonOrthogonality, q->meanNonOrthogonality, q->maxSkewness,
+            q->dictionaryFaces > 0 ? fmt::format("; {} faces beyond the limits", q->dictionaryFaces) : "");
     if (report.quality) text += aspectLine(report);
     if (const auto& f = report.fit)
         text += fmt::format(
