@@ -98,12 +98,13 @@ TEST(Layers, GrowByTheRatio) {
 }
 
 // Given heights are met to the last digit, and a cell over them takes the rest.
-// Few that share the room are neither, many are both, and so are those of a height that was asked for.
-TEST(Layers, AreThinAndFlatWhereManyOrOfAskedHeight) {
+// Few that share the room are neither and many are both, as are those of a height that is small beside the room.
+TEST(Layers, AreThinAndFlatWhereManyOrOfSmallHeight) {
     const Sample s;
     struct Row { LayerOptions asked; bool thin, flat; };
     const Row rows[] = {{options(1, 1.2), false, false}, {options(2, 1.2), false, false},  {options(5, 1.2), true, false}, {options(9, 1), true, false},
-                        {options(12, 1.2), true, true},  {options(12, 1), true, true}, {options(2, 1.2, 0.2 * s.leastRoom()), true, true}};
+                        {options(12, 1.2), true, true},  {options(12, 1), true, true},
+                        {options(0, 1.2), false, false}, {options(2, 1.2, 0.01 * s.leastRoom()), true, true}, {options(1, 1.2, 0.9 * s.leastRoom()), false, false}};
     for (const Row& row : rows) {
         const LayerStack stack = makeLayers(s.front, row.asked);
         EXPECT_EQ(stack.areThin(), row.thin) << row.asked.count;

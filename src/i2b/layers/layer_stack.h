@@ -44,11 +44,12 @@ struct LayerStack {
     std::vector<float> cellSize;             // m, per vertex
     // Per vertex; empty: all straight.
     std::vector<Column> columns;
+    double leastShare = 1;                   // of the room, that the lowest cells take on average where the plan is that leaves them least
 
     bool uniform() const { return cellOffsets.empty(); }
     int cellsOf(std::size_t face) const { return uniform() ? count : static_cast<int>(cellOffsets[face + 1] - cellOffsets[face]); }
     int pointsOf(std::size_t vertex) const { return uniform() ? count : static_cast<int>(pointOffsets[vertex + 1] - pointOffsets[vertex]); }
-    // Are there cells that are to be thin? Not where few share all the room, the same everywhere.
+    // Are there cells that are to be thin? Not where few share the room.
     bool areThin() const;
     // Even so thin that small determinants and weights are to be? Else they are to be as good as other cells.
     bool areFlat() const;
@@ -69,9 +70,6 @@ struct LayerStack {
     // "" or the first fault: sizes, a vertex without the points that the faces around it need, neighbours that differ by
     // more than a cell, points that do not fall to the wall.
     std::string validate(const Front& front) const;
-
-  private:
-    double leastShare() const; // of the room, that the lowest cells take where they fill it; else 0
 };
 
 // With straight columns: see bendColumns().

@@ -3,6 +3,7 @@
 #include "i2b/geometry/part_names.h"
 #include "i2b/layers/layer_stack.h"
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 #include <limits>
 #include <numeric>
@@ -10,7 +11,8 @@
 namespace i2b {
 namespace {
 
-constexpr double thinShare = 0.3, flatShare = 0.11; // of the room, that the lowest of thin and of flat layers is under
+constexpr double thinShare = 0.3, flatShare = 0.11; // of the room, that the lowest of thin and of flat layers is under,
+constexpr double thinHeight = 0.6; // and that those of a given height are under which columns should bend for
 
 FrontMesh::FaceHandle faceAt(std::size_t f) { return FrontMesh::FaceHandle(static_cast<int>(f)); }
 FrontMesh::VertexHandle vertexAt(std::size_t v) { return FrontMesh::VertexHandle(static_cast<int>(v)); }
@@ -105,7 +107,37 @@ WantedRoom roomWanted(const WallPlans& plans) {
     return room;
 }
 
-LayerStack makeLayers(const Front& front, const WallPlans& plans) {
+namespace {
+
+// Of the room at the vertices of each plan, the share that the lowest cell takes on average; the least of all plans.
+double leastShareOf(const Front& front, const LayerStack& stack) {
+    struct Sum {
+        double shares = 0, vertices = 0;
+    };
+    using Sums = std::vector<Sum>; // per plan
+    const auto body = [&](std::size_t begin, std::size_t end) {
+        Sums sums(stack.plans.size());
+        std::array<double, maxLayers + 1> heights;
+        for (std::size_t v = begin; v < end; ++v) {
+            const int n = stack.pointsOf(v);
+            const double room = roomAt(front, v);
+            Sum& sum = sums[stack.vertexPlan.empty() ? 0 : stack.vertexPlan[v]];
+            if (n > 1) stack.heights(v, room, heights.data());
+            sum.shares += n > 1 && room > 0 ? heights[static_cast<std::size_t>(n) - 2] / room : 1, ++sum.vertices;
+        }
+        return sums;
+    };
+    const auto join = [](Sums a, const Sums& b) {
+        for (std::size_t p = 0; p < a.size(); ++p) a[p].shares += b[p].shares, a[p].vertices += b[p].vertices;
+        return a;
+    };
+    double least = 1;
+    for (const Sum& sum : orderedReduce(stack.vertices, Sums(stack.plans.size()), body, join))
+        if (sum.vertices > 0) least = std::min(least, sum.shares / sum.vertices);
+    return least;
+}
+
+LayerStack countLayers(const Front& front, const WallPlans& plans) {
     LayerStack stack;
     stack.plans = plans.plans;
     stack.faces = front.ownerCell.size();
@@ -136,19 +168,25 @@ LayerStack makeLayers(const Front& front, const WallPlans& plans) {
     return stack;
 }
 
+} // namespace
+
+LayerStack makeLayers(const Front& front, const WallPlans& plans) {
+    LayerStack stack = countLayers(front, plans);
+    stack.leastShare = leastShareOf(front, stack);
+    return stack;
+}
+
 LayerStack makeLayers(const Front& front, const LayerOptions& options) {
     WallPlans plans;
     plans.plans.push_back(planOf(requestOf(options), options.unit));
     return makeLayers(front, plans);
 }
 
-bool LayerStack::areThin() const { return leastShare() < thinShare; }
-bool LayerStack::areFlat() const { return leastShare() < flatShare; }
-
-double LayerStack::leastShare() const {
-    const bool fill = uniform() && plans.front().fills();
-    return fill ? askedFirst(plans.front(), 1, 1) : 0;
+bool LayerStack::areThin() const {
+    return leastShare < (std::ranges::all_of(plans, &LayerPlan::fills) ? thinShare : thinHeight);
 }
+
+bool LayerStack::areFlat() const { return leastShare < flatShare; }
 
 std::size_t LayerStack::vertexOfPoint(std::size_t point) const {
     if (uniform()) return point / static_cast<std::size_t>(count);
