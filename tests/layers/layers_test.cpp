@@ -104,7 +104,7 @@ TEST(Layers, AreThinAndFlatWhereManyOrOfSmallHeight) {
     struct Row { LayerOptions asked; bool thin, flat; };
     const Row rows[] = {{options(1, 1.2), false, false}, {options(2, 1.2), false, false},  {options(5, 1.2), true, false}, {options(9, 1), true, false},
                         {options(12, 1.2), true, true},  {options(12, 1), true, true},
-                        {options(0, 1.2), false, false}, {options(2, 1.2, 0.01 * s.leastRoom()), true, true}, {options(1, 1.2, 0.9 * s.leastRoom()), false, false}};
+                        {options(0, 1.2), false, false}, {options(2, 1.2, 0.01 * s.leastRoom()), true, true}, {options(1, 1.2, 3 * s.leastRoom()), false, false}};
     for (const Row& row : rows) {
         const LayerStack stack = makeLayers(s.front, row.asked);
         EXPECT_EQ(stack.areThin(), row.thin) << row.asked.count;
