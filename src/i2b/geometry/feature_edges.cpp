@@ -1,5 +1,6 @@
 #include "i2b/geometry/feature_edges.h"
 #include "i2b/core/bucket_sort.h"
+#include "i2b/core/collect.h"
 #include <algorithm>
 
 namespace i2b {
@@ -30,41 +31,37 @@ std::size_t needleApex(const FeatureSoup& soup, const TriangleCorners& t, double
 }
 
 // The side of a triangle along an edge, or along the chain that stands for it.
-void addSides(const std::vector<Bridge>& bridges, Side side, int depth, std::vector<Side>& sides) {
+template <class Put>
+void addSides(const RawVector<Bridge>& bridges, Side side, int depth, const Put& put) {
     const auto found = std::lower_bound(bridges.begin(), bridges.end(), Bridge{side.edge, 0});
     if (depth == 0 || found == bridges.end() || found->edge != side.edge || found->middle == side.apex) {
-        sides.push_back(side);
+        put(side);
         return;
     }
     const EdgeKey edge = side.edge;
     side.edge = keyOf(edge.a, found->middle);
-    addSides(bridges, side, depth - 1, sides);
+    addSides(bridges, side, depth - 1, put);
     side.edge = keyOf(found->middle, edge.b);
-    addSides(bridges, side, depth - 1, sides);
+    addSides(bridges, side, depth - 1, put);
 }
 
-std::vector<Side> collectSides(const FeatureSoup& soup, FeatureGraph& graph) {
+RawVector<Side> collectSides(const FeatureSoup& soup, FeatureGraph& graph) {
     std::vector<std::uint8_t> needle(soup.triangles.size());
     parallelFor(needle.size(), [&](std::size_t t) {
         needle[t] = static_cast<std::uint8_t>(needleApex(soup, soup.triangles[t], graph.weldTolerance));
     });
-    std::vector<Bridge> bridges;
-    for (std::size_t t = 0; t < needle.size(); ++t) {
-        if (needle[t] == 3) continue;
+    RawVector<Bridge> bridges = collect<Bridge>(needle.size(), [&](std::size_t t, const auto& put) {
         const TriangleCorners& v = soup.triangles[t];
-        bridges.push_back({keyOf(v[(needle[t] + 1u) % 3], v[(needle[t] + 2u) % 3]), v[needle[t]]});
-    }
+        if (needle[t] != 3) put({keyOf(v[(needle[t] + 1u) % 3], v[(needle[t] + 2u) % 3]), v[needle[t]]});
+    });
     graph.degenerateTriangles += bridges.size();
     std::sort(bridges.begin(), bridges.end());
-    std::vector<Side> sides;
-    sides.reserve(3 * soup.triangles.size());
-    for (std::size_t t = 0; t < needle.size(); ++t) {
-        if (needle[t] != 3) continue;
+    RawVector<Side> sides = collect<Side>(needle.size(), [&](std::size_t t, const auto& put) {
+        if (needle[t] != 3) return;
         const TriangleCorners& v = soup.triangles[t];
         for (std::size_t k = 0; k < 3; ++k)
-            addSides(bridges, {keyOf(v[k], v[(k + 1) % 3]), static_cast<std::uint32_t>(t), v[(k + 2) % 3]}, 8,
-                     sides);
-    }
+            addSides(bridges, {keyOf(v[k], v[(k + 1) % 3]), static_cast<std::uint32_t>(t), v[(k + 2) % 3]}, 8, put);
+    });
     bucketSort(sides, soup.points.size(), [](const Side& s) { return std::size_t(s.edge.a); });
     return sides;
 }
@@ -112,15 +109,13 @@ FeatureEdge judge(const FeatureSoup& soup, const Side* sides, std::size_t n, dou
 
 } // namespace
 
-std::vector<FeatureEdge> judgeEdges(const FeatureSoup& soup, double limit, const std::vector<bool>& isNamed,
+RawVector<FeatureEdge> judgeEdges(const FeatureSoup& soup, double limit, const std::vector<bool>& isNamed,
                                     FeatureGraph& graph) {
-    const std::vector<Side> sides = collectSides(soup, graph);
-    std::vector<std::size_t> start;
-    start.reserve(sides.size() / 2 + 1);
-    for (std::size_t i = 0; i < sides.size(); ++i)
-        if (i == 0 || sides[i].edge != sides[i - 1].edge) start.push_back(i);
-    start.push_back(sides.size());
-    std::vector<FeatureEdge> edges(start.size() - 1);
+    const RawVector<Side> sides = collectSides(soup, graph);
+    const RawVector<std::size_t> start = collect<std::size_t>(sides.size() + 1, [&](std::size_t i, const auto& put) {
+        if (i == 0 || i == sides.size() || sides[i].edge != sides[i - 1].edge) put(i);
+    });
+    RawVector<FeatureEdge> edges(start.size() - 1);
     parallelFor(edges.size(), [&](std::size_t i) {
         edges[i] = judge(soup, &sides[start[i]], start[i + 1] - start[i], limit, isNamed);
     });

@@ -1,5 +1,6 @@
 // The edges of a welded soup and what they are. Private to features.cpp and its neighbours.
 #pragma once
+#include "i2b/core/raw_vector.h"
 #include "i2b/geometry/feature_soup.h"
 #include <cmath>
 #include <numbers>
@@ -15,7 +16,7 @@ inline double fold(const Vec3& u, const Vec3& v) {
 // Steps 3 to 5 of features.cpp: every edge of the soup with its kinds and angle, those without a kind too; a < b,
 // ascending. limit: degrees above which it is sharp. isNamed: per part, whether its free edges and borders are named.
 // Counts in the graph the needles that it bridges.
-std::vector<FeatureEdge> judgeEdges(const FeatureSoup& soup, double limit, const std::vector<bool>& isNamed,
+RawVector<FeatureEdge> judgeEdges(const FeatureSoup& soup, double limit, const std::vector<bool>& isNamed,
                                     FeatureGraph& graph);
 
 } // namespace i2b

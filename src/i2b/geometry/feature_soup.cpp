@@ -1,7 +1,10 @@
 #include "i2b/geometry/feature_soup.h"
 #include "i2b/core/bucket_sort.h"
+#include "i2b/core/collect.h"
 #include <algorithm>
+#include <atomic>
 #include <bit>
+#include <functional>
 #include <span>
 
 namespace i2b {
@@ -37,17 +40,18 @@ struct PointGrid {
 };
 
 // The lowest-numbered point within the tolerance of each used point (itself, if none is lower).
-std::vector<std::uint32_t> weldTargets(std::span<const Vec3> points, const std::vector<std::uint32_t>& used,
+RawVector<std::uint32_t> weldTargets(std::span<const Vec3> points, std::span<const std::uint32_t> used,
                                        double tolerance, const Box& bounds) {
     // Never so small that a cell's number overflows.
     const PointGrid grid{bounds.lo, std::max({4 * tolerance, 1e-15 * norm(bounds.extent()), 1e-300})};
-    std::vector<HashedPoint> sorted(used.size());
+    RawVector<HashedPoint> sorted(used.size());
     parallelFor(used.size(), [&](std::size_t i) {
         sorted[i] = {grid.at(points[used[i]]).hash(), used[i]};
     });
     const auto bits = static_cast<int>(std::bit_width(sorted.size() / 4));
     bucketSort(sorted, std::size_t(1) << bits, [&](const HashedPoint& h) { return static_cast<std::size_t>(bits == 0 ? 0 : h.hash >> (64 - bits)); });
-    std::vector<std::uint32_t> target(points.size(), none);
+    RawVector<std::uint32_t> nearest(points.size());
+    parallelFor(nearest.size(), [&](std::size_t i) { nearest[i] = none; }, 4096);
     const double limit = tolerance * tolerance;
     parallelFor(sorted.size(), [&](std::size_t i) {
         const std::uint32_t self = sorted[i].point;
@@ -71,11 +75,14 @@ std::vector<std::uint32_t> weldTargets(std::span<const Vec3> points, const std::
                             sorted.begin());
                     look(hash, from);
                 }
-        target[self] = best;
+        nearest[self] = best;
     });
-    // Ascending: a target's own target is already its last one.
-    for (std::size_t i = 0; i < target.size(); ++i)
-        if (target[i] != none) target[i] = target[target[i]];
+    RawVector<std::uint32_t> target(points.size());
+    parallelFor(target.size(), [&](std::size_t i) { // down the chain to one that is its own
+        std::uint32_t t = nearest[i];
+        while (t != none && nearest[t] != t) t = nearest[t];
+        target[i] = t;
+    }, 4096);
     return target;
 }
 
@@ -86,20 +93,40 @@ struct SortedCorners {
 };
 
 // Numbers the welded points and turns targets into these numbers; gives how many come from the first `own` points.
-std::size_t numberPoints(std::span<const Vec3> points, std::size_t own, std::vector<std::uint32_t>& target,
-                         FeatureSoup& soup) {
-    std::vector<std::uint32_t> number(target.size(), none);
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < target.size(); ++i) {
-        if (target[i] == none) continue;
-        if (target[i] == i) {
-            number[i] = static_cast<std::uint32_t>(soup.points.size());
-            soup.points.push_back(points[i]);
-            if (i < own) ++count;
-        }
-        target[i] = number[target[i]];
-    }
-    return count;
+std::size_t numberPoints(std::span<const Vec3> points, std::size_t own, RawVector<std::uint32_t>& target, FeatureSoup& soup) {
+    const RawVector<std::uint32_t> roots = collect<std::uint32_t>(target.size(), [&](std::size_t i, const auto& put) {
+        if (target[i] == i) put(static_cast<std::uint32_t>(i));
+    });
+    soup.points.resize(roots.size());
+    RawVector<std::uint32_t> number(target.size()); // read of roots alone
+    parallelFor(roots.size(), [&](std::size_t n) {
+        soup.points[n] = points[roots[n]];
+        number[roots[n]] = static_cast<std::uint32_t>(n);
+    });
+    parallelFor(target.size(), [&](std::size_t i) {
+        if (target[i] != none) target[i] = number[target[i]];
+    }, 4096);
+    return static_cast<std::size_t>(std::lower_bound(roots.begin(), roots.end(), own) - roots.begin());
+}
+
+// Those of three different points, each set of points once.
+void takeTriangles(const Surface& s, const RawVector<SortedCorners>& sorted, FeatureGraph& graph, FeatureSoup& soup) {
+    const auto isPoor = [&](std::size_t i) { return sorted[i].corners[0] == sorted[i].corners[1] || sorted[i].corners[1] == sorted[i].corners[2]; };
+    const RawVector<std::size_t> kept = collect<std::size_t>(sorted.size(), [&](std::size_t i, const auto& put) {
+        if (!isPoor(i) && (i == 0 || sorted[i].corners != sorted[i - 1].corners)) put(i);
+    });
+    const auto poor = orderedReduce(sorted.size(), std::uint64_t(0), [&](std::size_t begin, std::size_t end) {
+        std::uint64_t n = 0;
+        for (std::size_t i = begin; i < end; ++i) n += isPoor(i);
+        return n;
+    }, std::plus<>());
+    graph.degenerateTriangles += poor;
+    graph.duplicateTriangles += sorted.size() - kept.size() - poor;
+    soup.triangles.resize(kept.size()), soup.partOf.resize(kept.size());
+    parallelFor(kept.size(), [&](std::size_t i) {
+        soup.triangles[i] = sorted[kept[i]].corners;
+        soup.partOf[i] = s.partOf.empty() ? 0 : s.partOf[sorted[kept[i]].triangle];
+    });
 }
 
 // target: of the lines' points.
@@ -114,13 +141,14 @@ void takeLines(const FeatureLines& lines, std::span<const std::uint32_t> target,
 } // namespace
 
 FeatureSoup weldSoup(const Surface& s, const FeatureLines& lines, FeatureGraph& graph) {
-    std::vector<bool> isUsed(s.points.size());
-    for (const TriangleCorners& t : s.triangles)
-        for (const std::uint32_t p : t) isUsed[p] = true;
-    std::vector<std::uint32_t> used;
-    Box bounds;
-    for (std::uint32_t i = 0; i < isUsed.size(); ++i)
-        if (isUsed[i]) used.push_back(i), bounds.add(s.points[i]);
+    std::vector<std::uint8_t> isUsed(s.points.size());
+    parallelFor(s.triangles.size(), [&](std::size_t t) {
+        for (const std::uint32_t p : s.triangles[t]) std::atomic_ref(isUsed[p]).store(1, std::memory_order_relaxed);
+    }, 4096);
+    RawVector<std::uint32_t> used = collect<std::uint32_t>(isUsed.size(), [&](std::size_t i, const auto& put) {
+        if (isUsed[i]) put(static_cast<std::uint32_t>(i));
+    });
+    const Box bounds = s.bounds();
     if (graph.weldTolerance <= 0 && !used.empty()) graph.weldTolerance = 1e-6 * norm(bounds.extent());
 
     std::span<const Vec3> points = s.points;
@@ -132,28 +160,18 @@ FeatureSoup weldSoup(const Surface& s, const FeatureLines& lines, FeatureGraph& 
         points = joined;
     }
     FeatureSoup soup;
-    std::vector<std::uint32_t> target = weldTargets(points, used, graph.weldTolerance, bounds);
+    RawVector<std::uint32_t> target = weldTargets(points, used, graph.weldTolerance, bounds);
     graph.weldedPoints = numberPoints(points, s.points.size(), target, soup);
-    takeLines(lines, std::span(target).subspan(s.points.size()), soup);
+    takeLines(lines, std::span<const std::uint32_t>(target).subspan(s.points.size()), soup);
 
-    std::vector<SortedCorners> sorted(s.triangles.size());
+    RawVector<SortedCorners> sorted(s.triangles.size());
     parallelFor(sorted.size(), [&](std::size_t t) {
         const TriangleCorners& v = s.triangles[t];
         sorted[t] = {{target[v[0]], target[v[1]], target[v[2]]}, static_cast<std::uint32_t>(t)};
         std::sort(sorted[t].corners.begin(), sorted[t].corners.end());
     });
-    bucketSort(sorted, soup.points.size(), [](const SortedCorners& s) { return std::size_t(s.corners[0]); });
-    for (std::size_t i = 0; i < sorted.size(); ++i) {
-        const TriangleCorners& v = sorted[i].corners;
-        if (v[0] == v[1] || v[1] == v[2]) {
-            ++graph.degenerateTriangles;
-        } else if (i > 0 && v == sorted[i - 1].corners) {
-            ++graph.duplicateTriangles;
-        } else {
-            soup.triangles.push_back(v);
-            soup.partOf.push_back(s.partOf.empty() ? 0 : s.partOf[sorted[i].triangle]);
-        }
-    }
+    bucketSort(sorted, soup.points.size(), [](const SortedCorners& c) { return std::size_t(c.corners[0]); });
+    takeTriangles(s, sorted, graph, soup);
     return soup;
 }
 

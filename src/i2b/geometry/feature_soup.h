@@ -1,6 +1,7 @@
 // First steps towards a feature graph: points welded, triangles that say nothing new dropped. Private to features.cpp
 // and its neighbours.
 #pragma once
+#include "i2b/core/raw_vector.h"
 #include "i2b/geometry/features.h"
 #include <array>
 #include <cstdint>
@@ -17,9 +18,9 @@ struct EdgeKey {
 inline EdgeKey keyOf(std::uint32_t a, std::uint32_t b) { return a < b ? EdgeKey{a, b} : EdgeKey{b, a}; }
 
 struct FeatureSoup {
-    std::vector<Vec3> points;               // m, welded: those of triangles, then those of lines alone
-    std::vector<TriangleCorners> triangles; // of different points, each set of corners once
-    std::vector<std::int32_t> partOf;       // per triangle
+    RawVector<Vec3> points;                 // m, welded: those of triangles, then those of lines alone
+    RawVector<TriangleCorners> triangles;   // of different points, each set of corners once
+    RawVector<std::int32_t> partOf;         // per triangle
     std::vector<EdgeKey> lines;             // of FeatureLines, without those of no length; each once, ascending
     std::vector<std::uint32_t> corners;     // of FeatureLines
 };

@@ -10,23 +10,33 @@
 //   8. keep     and number what is of any kind
 #include "i2b/geometry/features.h"
 #include "i2b/core/checksum.h"
+#include "i2b/core/collect.h"
+#include "i2b/core/sort_unique.h"
 #include "i2b/geometry/feature_corners.h"
 #include "i2b/geometry/feature_edges.h"
 #include "i2b/geometry/named_features.h"
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace i2b {
 namespace {
 
-constexpr std::uint32_t none = ~0u;
-
 // Facts about the soup, before boxes cut its edges.
-void countFaults(const FeatureSoup& soup, const std::vector<FeatureEdge>& all, FeatureGraph& graph) {
-    for (const FeatureEdge& e : all) {
-        if (e.kinds & bitOf(EdgeKind::free))
-            ++graph.openEdges, graph.openEdgeLength += norm(soup.points[e.b] - soup.points[e.a]);
-        if (e.kinds & bitOf(EdgeKind::nonManifold)) ++graph.nonManifoldEdges;
-    }
+void countFaults(const FeatureSoup& soup, const RawVector<FeatureEdge>& all, FeatureGraph& graph) {
+    struct Faults {
+        std::uint64_t open = 0, nonManifold = 0;
+        double openLength = 0;
+    };
+    const Faults faults = orderedReduce(all.size(), Faults{}, [&](std::size_t begin, std::size_t end) {
+        Faults f;
+        for (std::size_t i = begin; i < end; ++i) {
+            const FeatureEdge& e = all[i];
+            if (e.kinds & bitOf(EdgeKind::free)) ++f.open, f.openLength += norm(soup.points[e.b] - soup.points[e.a]);
+            if (e.kinds & bitOf(EdgeKind::nonManifold)) ++f.nonManifold;
+        }
+        return f;
+    }, [](const Faults& a, const Faults& b) { return Faults{a.open + b.open, a.nonManifold + b.nonManifold, a.openLength + b.openLength}; });
+    graph.openEdges += faults.open, graph.nonManifoldEdges += faults.nonManifold, graph.openEdgeLength += faults.openLength;
 }
 
 void countLines(FeatureGraph& graph) {
@@ -37,24 +47,18 @@ void countLines(FeatureGraph& graph) {
     }
 }
 
-void keepFeatures(const FeatureSoup& soup, const std::vector<FeatureEdge>& all,
-                  const std::vector<std::uint32_t>& corners, FeatureGraph& graph) {
-    std::vector<std::uint32_t> number(soup.points.size(), none);
-    for (const FeatureEdge& e : all)
-        if (e.kinds != 0) number[e.a] = number[e.b] = 0;
-    for (const std::uint32_t c : corners) number[c] = 0;
-    for (std::size_t i = 0; i < number.size(); ++i) {
-        if (number[i] == none) continue;
-        number[i] = static_cast<std::uint32_t>(graph.points.size());
-        graph.points.push_back(soup.points[i]);
-    }
-    for (FeatureEdge e : all) { // numbers ascend with the points: the order stays
-        if (e.kinds == 0) continue;
-        e.a = number[e.a];
-        e.b = number[e.b];
-        graph.edges.push_back(e);
-    }
-    for (const std::uint32_t c : corners) graph.corners.push_back(number[c]);
+void keepFeatures(const FeatureSoup& soup, const RawVector<FeatureEdge>& all, const std::vector<std::uint32_t>& corners, FeatureGraph& graph) {
+    const RawVector<FeatureEdge> kept = collect<FeatureEdge>(all.size(), [&](std::size_t i, const auto& put) {
+        if (all[i].kinds != 0) put(all[i]);
+    });
+    std::vector<std::uint32_t> used = corners;
+    for (const FeatureEdge& e : kept) used.push_back(e.a), used.push_back(e.b);
+    sortUnique(used);
+    const auto numberOf = [&](std::uint32_t p) { return static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), p) - used.begin()); };
+    for (const std::uint32_t p : used) graph.points.push_back(soup.points[p]);
+    graph.edges.assign(kept.begin(), kept.end());
+    for (FeatureEdge& e : graph.edges) e.a = numberOf(e.a), e.b = numberOf(e.b); // ascend with the points: the order stays
+    for (const std::uint32_t c : corners) graph.corners.push_back(numberOf(c));
 }
 
 } // namespace
@@ -67,7 +71,7 @@ FeatureGraph buildFeatureGraph(const Surface& surface, const FeatureOptions& opt
     FeatureGraph graph;
     graph.weldTolerance = options.weldTolerance;
     FeatureSoup soup = weldSoup(surface, options.lines, graph);
-    std::vector<FeatureEdge> all =
+    RawVector<FeatureEdge> all =
         judgeEdges(soup, options.angle, namedParts(surface.parts, options.parts, graph.notes), graph);
     countFaults(soup, all, graph);
     addLines(soup, all);

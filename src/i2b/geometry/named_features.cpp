@@ -92,7 +92,7 @@ std::vector<bool> namedParts(const std::vector<Part>& parts, const std::vector<s
 }
 
 void applyBoxes(const std::vector<FeatureBox>& boxes, double tolerance, FeatureSoup& soup,
-                std::vector<FeatureEdge>& edges) {
+                RawVector<FeatureEdge>& edges) {
     if (boxes.empty()) return;
     const std::size_t count = edges.size();
     for (std::size_t i = 0; i < count; ++i) {
@@ -122,7 +122,7 @@ void applyBoxes(const std::vector<FeatureBox>& boxes, double tolerance, FeatureS
     std::sort(edges.begin(), edges.end(), before);
 }
 
-void addLines(const FeatureSoup& soup, std::vector<FeatureEdge>& edges) {
+void addLines(const FeatureSoup& soup, RawVector<FeatureEdge>& edges) {
     if (soup.lines.empty()) return;
     const std::size_t count = edges.size();
     for (const EdgeKey& line : soup.lines) {

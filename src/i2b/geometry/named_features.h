@@ -13,13 +13,13 @@ std::vector<bool> namedParts(const std::vector<Part>& parts, const std::vector<s
 
 // Names the edges that the soup's lines run along, and adds those that no triangle has. edges: a < b, ascending,
 // before and after.
-void addLines(const FeatureSoup& soup, std::vector<FeatureEdge>& edges);
+void addLines(const FeatureSoup& soup, RawVector<FeatureEdge>& edges);
 
 // Judges the edges inside boxes anew, by the last box that holds them; where boxes of different kinds begin or end
 // inside an edge, it is cut: new points come at the end of the soup's. No piece is shorter than tolerance (m). The soup's
 // lines stay as they are. Order as above.
 void applyBoxes(const std::vector<FeatureBox>& boxes, double tolerance, FeatureSoup& soup,
-                std::vector<FeatureEdge>& edges);
+                RawVector<FeatureEdge>& edges);
 
 // Ascending, each once.
 void addCorners(const std::vector<std::uint32_t>& more, std::vector<std::uint32_t>& corners);

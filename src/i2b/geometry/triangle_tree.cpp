@@ -58,8 +58,8 @@ float floatAbove(double x) {
     return std::nextafter(f, std::numeric_limits<float>::infinity());
 }
 
-std::vector<RTCBuildPrimitive> buildPrimitives(const Surface& surface, const Vec3& centre) {
-    std::vector<RTCBuildPrimitive> primitives(surface.triangles.size());
+RawVector<RTCBuildPrimitive> buildPrimitives(const Surface& surface, const Vec3& centre) {
+    RawVector<RTCBuildPrimitive> primitives(surface.triangles.size());
     parallelFor(primitives.size(), [&](std::size_t t) {
         Box box;
         for (const std::uint32_t p : surface.triangles[t]) box.add(surface.points[p] - centre);
@@ -70,10 +70,22 @@ std::vector<RTCBuildPrimitive> buildPrimitives(const Surface& surface, const Vec
     return primitives;
 }
 
-// Depth first, children in the builder's order; leaves take the next triangles.
-std::uint32_t flatten(const BuildNode& from, TriangleTree& tree) {
-    const auto at = static_cast<std::uint32_t>(tree.nodes.size());
-    TreeNode& node = tree.nodes.emplace_back();
+[[noreturn]] void throwOutOfMemory() {
+    throw Error(ErrorKind::internal, "the spatial index of the geometry could not be built", "surface index",
+                "free some memory and try again");
+}
+
+// How much of the tree's arrays something takes, or where it begins there.
+struct Extent {
+    std::uint32_t nodes = 0, triangles = 0;
+};
+
+// Writes a node at `next` and takes the leaves of it; descend(child, next) gives the place of each inner child. Depth first,
+// children in the builder's order.
+template <class Descend>
+std::uint32_t place(const BuildNode& from, Extent& next, TriangleTree& tree, const Descend& descend) {
+    const std::uint32_t at = next.nodes++;
+    TreeNode& node = tree.nodes[at];
     for (std::size_t i = 0; i < 4; ++i) {
         const bool used = i < from.children;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -83,23 +95,87 @@ std::uint32_t flatten(const BuildNode& from, TriangleTree& tree) {
         const BuildLeaf* leaf = used ? leafOf(from.child[i]) : nullptr;
         node.child[i] = TreeNode::none;
         node.count[i] = leaf ? leaf->count : 0;
-    }
-    for (std::size_t i = 0; i < from.children; ++i) {
-        const BuildLeaf* leaf = leafOf(from.child[i]);
+        if (!used) continue;
         if (!leaf) {
-            const std::uint32_t n = flatten(*reinterpret_cast<const BuildNode*>(from.child[i]), tree);
-            tree.nodes[at].child[i] = n;
+            node.child[i] = descend(*reinterpret_cast<const BuildNode*>(from.child[i]), next);
             continue;
         }
-        tree.nodes[at].child[i] = static_cast<std::uint32_t>(tree.triangles.size());
-        for (std::uint32_t k = 0; k < leaf->count; ++k) tree.triangles.emplace_back().id = leaf->triangles[k];
+        node.child[i] = next.triangles;
+        for (std::uint32_t k = 0; k < leaf->count; ++k) tree.triangles[next.triangles++].id = leaf->triangles[k];
     }
     return at;
 }
 
-[[noreturn]] void throwOutOfMemory() {
-    throw Error(ErrorKind::internal, "the spatial index of the geometry could not be built", "surface index",
-                "free some memory and try again");
+std::uint32_t placeAll(const BuildNode& from, Extent& next, TriangleTree& tree) {
+    return place(from, next, tree, [&](const BuildNode& child, Extent& n) { return placeAll(child, n, tree); });
+}
+
+Extent extentOf(const BuildNode& from) {
+    Extent sum{1, 0};
+    for (std::size_t i = 0; i < from.children; ++i) {
+        if (const BuildLeaf* leaf = leafOf(from.child[i])) {
+            sum.triangles += leaf->count;
+            continue;
+        }
+        const Extent e = extentOf(*reinterpret_cast<const BuildNode*>(from.child[i]));
+        sum.nodes += e.nodes, sum.triangles += e.triangles;
+    }
+    return sum;
+}
+
+// The nodes so many steps below one, depth first.
+void collectBelow(const BuildNode& from, int steps, std::vector<const BuildNode*>& out) {
+    if (steps == 0) return out.push_back(&from);
+    for (std::size_t i = 0; i < from.children; ++i)
+        if (!leafOf(from.child[i])) collectBelow(*reinterpret_cast<const BuildNode*>(from.child[i]), steps - 1, out);
+}
+
+// Where the subtrees begin that lie so many steps below a node and take so much each.
+void collectStarts(const BuildNode& from, int steps, const std::vector<Extent>& taken, Extent& next, std::vector<Extent>& starts) {
+    ++next.nodes;
+    for (std::size_t i = 0; i < from.children; ++i) {
+        if (const BuildLeaf* leaf = leafOf(from.child[i])) {
+            next.triangles += leaf->count;
+        } else if (steps > 1) {
+            collectStarts(*reinterpret_cast<const BuildNode*>(from.child[i]), steps - 1, taken, next, starts);
+        } else {
+            const Extent& e = taken[starts.size()];
+            starts.push_back(next);
+            next.nodes += e.nodes, next.triangles += e.triangles;
+        }
+    }
+}
+
+// The nodes above these subtrees; below: the next of them.
+std::uint32_t placeTop(const BuildNode& from, int steps, const std::vector<Extent>& taken, const std::vector<Extent>& starts, std::size_t& below, Extent& next,
+                       TriangleTree& tree) {
+    return place(from, next, tree, [&](const BuildNode& child, Extent& n) {
+        if (steps > 1) return placeTop(child, steps - 1, taken, starts, below, n, tree);
+        const Extent &start = starts[below], &e = taken[below];
+        ++below;
+        n.nodes += e.nodes, n.triangles += e.triangles;
+        return start.nodes;
+    });
+}
+
+// Subtrees some steps below the root are counted and then written side by side, each where it lies depth first; what is above them at
+// the end, so that they are the first to touch the memory.
+void flatten(const BuildNode& root, TriangleTree& tree) {
+    constexpr int steps = 5; // at most 1024 of them
+    std::vector<const BuildNode*> below;
+    collectBelow(root, steps, below);
+    std::vector<Extent> taken(below.size()), starts;
+    parallelFor(below.size(), [&](std::size_t i) { taken[i] = extentOf(*below[i]); }, 4);
+    Extent all, next;
+    collectStarts(root, steps, taken, all, starts);
+    if (all.triangles != tree.triangles.size()) throwOutOfMemory();
+    tree.nodes.resize(all.nodes);
+    parallelFor(below.size(), [&](std::size_t i) {
+        Extent from = starts[i];
+        placeAll(*below[i], from, tree);
+    }, 4);
+    std::size_t done = 0;
+    placeTop(root, steps, taken, starts, done, next, tree);
 }
 
 } // namespace
@@ -107,15 +183,13 @@ std::uint32_t flatten(const BuildNode& from, TriangleTree& tree) {
 TriangleTree buildTriangleTree(const Surface& surface) {
     TriangleTree tree;
     if (surface.triangles.empty()) return tree;
-    Box bounds;
-    for (const auto& t : surface.triangles)
-        for (const std::uint32_t p : t) bounds.add(surface.points[p]);
+    const Box bounds = surface.bounds();
     tree.centre = bounds.centre();
     tree.reach = std::max(maxAbs(bounds.lo - tree.centre), maxAbs(bounds.hi - tree.centre));
     tree.magnitude = std::max(maxAbs(bounds.lo), maxAbs(bounds.hi));
 
     tree.placeOf.resize(surface.triangles.size());
-    std::vector<RTCBuildPrimitive> primitives = buildPrimitives(surface, tree.centre);
+    RawVector<RTCBuildPrimitive> primitives = buildPrimitives(surface, tree.centre);
     RTCDevice device = rtcNewDevice(nullptr);
     RTCBVH bvh = rtcNewBVH(device);
     RTCBuildArguments arguments = rtcDefaultBuildArguments();
@@ -133,8 +207,7 @@ TriangleTree buildTriangleTree(const Surface& surface) {
     arguments.createLeaf = createLeaf;
     const auto root = reinterpret_cast<std::uintptr_t>(rtcBuildBVH(&arguments));
     if (root != 0) {
-        tree.triangles.reserve(primitives.size());
-        tree.nodes.reserve(primitives.size() / 2 + 1);
+        tree.triangles.resize(primitives.size());
         if (!leafOf(root)) {
             flatten(*reinterpret_cast<const BuildNode*>(root), tree);
         } else { // so few triangles that the root is a leaf
@@ -148,7 +221,7 @@ TriangleTree buildTriangleTree(const Surface& surface) {
     }
     rtcReleaseBVH(bvh);
     rtcReleaseDevice(device);
-    if (tree.triangles.size() != surface.triangles.size()) throwOutOfMemory();
+    if (tree.nodes.empty()) throwOutOfMemory();
     parallelFor(tree.triangles.size(), [&](std::size_t i) {
         TreeTriangle& t = tree.triangles[i];
         tree.placeOf[t.id] = static_cast<std::uint32_t>(i);

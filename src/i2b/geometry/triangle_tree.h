@@ -3,6 +3,7 @@
 // leaves. Embree's surface-area builder makes the tree; the walks are ours, so that no answer depends on
 // single precision.
 #pragma once
+#include "i2b/core/raw_vector.h"
 #include "i2b/core/vec.h"
 #include "i2b/geometry/surface.h"
 #include <algorithm>
@@ -34,9 +35,9 @@ struct TriangleTree {
     Vec3 centre;                 // m
     double reach = 0;            // m, largest coordinate about the centre
     double magnitude = 0;        // m, largest coordinate about the origin
-    std::vector<TreeNode> nodes; // the root first; empty without triangles
-    std::vector<TreeTriangle> triangles;
-    std::vector<std::uint32_t> placeOf; // per triangle of the surface: where it is among these
+    RawVector<TreeNode> nodes;   // the root first; empty without triangles
+    RawVector<TreeTriangle> triangles;
+    RawVector<std::uint32_t> placeOf;   // per triangle of the surface: where it is among these
 };
 
 TriangleTree buildTriangleTree(const Surface& surface);
