@@ -1,6 +1,6 @@
 #include "i2b/front/front.h"
 #include "i2b/core/checksum.h"
-#include "i2b/core/error.h"
+#include "i2b/front/join_faces.h"
 #include <algorithm>
 #include <fmt/format.h>
 #include <limits>
@@ -66,7 +66,7 @@ Vec3 towardsComponent(const VertexPattern& pattern, std::uint8_t component) {
     return n > 0 ? sum / n : sum;
 }
 
-void addVertices(Front& front, const LatticeMesh& mesh, double thickness) {
+void addVertices(Front& front, const LatticeMesh& mesh) {
     const auto n = static_cast<std::size_t>(mesh.fanCount());
     front.front.resize(n), front.corePoint.resize(n), front.h.resize(n), front.size.resize(n), front.inside.resize(n), front.direction.resize(n), front.outside.resize(n);
     for (int l = 0; l < mesh.pointLevels(); ++l) {
@@ -87,45 +87,54 @@ void addVertices(Front& front, const LatticeMesh& mesh, double thickness) {
         });
     }
     if (!mesh.cubes()) sizesPerAxis(front, mesh);
-    front.mesh.reserve(n, 2 * n + 16, n + 16);
-    for (std::size_t i = 0; i < n; ++i) {
-        const Vec3 d{double(front.direction[i][0]), double(front.direction[i][1]), double(front.direction[i][2])};
-        const Vec3 b = front.front[i] + d * (thickness * front.h[i]);
+    parallelFor(n, [&](std::size_t i) {
         const Vec3 s = front.size[i];
         front.inside[i] = front.front[i] + Vec3{front.inside[i].x * s.x, front.inside[i].y * s.y, front.inside[i].z * s.z};
-        front.mesh.add_vertex({b.x, b.y, b.z});
-    }
+    }, 2048);
+}
+
+// One after another, in the order of levels and cells.
+Polygons putTogether(const std::vector<FacePiece>& pieces, Front& front) {
+    std::vector<std::size_t> face(pieces.size()), side(pieces.size());
+    for (std::size_t p = 0; p < pieces.size(); ++p) face[p] = pieces[p].owner.size(), side[p] = pieces[p].fans.size();
+    const std::size_t faces = exclusiveScan(face), sides = exclusiveScan(side);
+    Polygons polygons;
+    polygons.start.resize(faces + 1), polygons.vertices.resize(sides);
+    polygons.start.back() = sides;
+    front.ownerCell.resize(faces), front.level.resize(faces);
+    parallelFor(pieces.size(), [&](std::size_t p) {
+        const FacePiece& piece = pieces[p];
+        const auto first = static_cast<std::ptrdiff_t>(face[p]);
+        std::copy(piece.owner.begin(), piece.owner.end(), front.ownerCell.begin() + first);
+        std::copy(piece.level.begin(), piece.level.end(), front.level.begin() + first);
+        std::copy(piece.fans.begin(), piece.fans.end(), polygons.vertices.begin() + static_cast<std::ptrdiff_t>(side[p]));
+        std::size_t at = side[p];
+        for (std::size_t i = 0; i < piece.size.size(); ++i) polygons.start[face[p] + i] = at, at += piece.size[i];
+    }, 1);
+    return polygons;
 }
 
 } // namespace
 
 Front buildFront(const LatticeMesh& mesh, double thickness) {
     Front front;
-    addVertices(front, mesh, thickness);
-    std::vector<FrontMesh::VertexHandle> polygon;
+    addVertices(front, mesh);
+    std::vector<FacePiece> pieces;
     for (int l = 0; l < mesh.levels(); ++l) {
         constexpr std::size_t chunk = 32;
-        const std::size_t nodes = mesh.cells(l).leafCount();
-        std::vector<FacePiece> pieces((nodes + chunk - 1) / chunk);
+        const std::size_t nodes = mesh.cells(l).leafCount(), before = pieces.size();
+        pieces.resize(before + (nodes + chunk - 1) / chunk);
         parallelChunks(nodes, chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
             LatticeMesh::Reader reader(mesh);
-            for (std::size_t node = begin; node < end; ++node) collectFaces(mesh, l, node, reader, pieces[c]);
+            for (std::size_t node = begin; node < end; ++node) collectFaces(mesh, l, node, reader, pieces[before + c]);
         });
-        for (const FacePiece& piece : pieces) {
-            const std::int32_t* fan = piece.fans.data();
-            for (std::size_t i = 0; i < piece.owner.size(); ++i) {
-                polygon.clear();
-                for (int k = 0; k < piece.size[i]; ++k) polygon.emplace_back(*fan++);
-                if (!front.mesh.add_face(polygon).is_valid()) {
-                    const Vec3 p = front.front[static_cast<std::size_t>(polygon[0].idx())];
-                    throw Error(ErrorKind::internal, "the front is not manifold",
-                                fmt::format("({:g} {:g} {:g})", p.x, p.y, p.z), "please report the case");
-                }
-                front.ownerCell.push_back(piece.owner[i]);
-                front.level.push_back(piece.level[i]);
-            }
-        }
     }
+    const auto wallStart = [&](std::size_t i) {
+        const Vec3 d{double(front.direction[i][0]), double(front.direction[i][1]), double(front.direction[i][2])};
+        const Vec3 b = front.front[i] + d * (thickness * front.h[i]);
+        return FrontMesh::Point{b.x, b.y, b.z};
+    };
+    front.mesh = joinFaces(front.front.size(), wallStart, putTogether(pieces, front), "the front is not manifold");
     front.part.assign(front.ownerCell.size(), 0);
     front.corePoints = static_cast<std::int32_t>(mesh.pointCount());
     front.pieces.assign(front.ownerCell.size(), 1);

@@ -1,63 +1,80 @@
 #include "i2b/front/replace_faces.h"
-#include "i2b/core/error.h"
-#include <fmt/format.h>
+#include "i2b/core/parallel.h"
+#include "i2b/front/join_faces.h"
 
 namespace i2b {
 namespace {
 
-// The faces of a front, collected one by one.
-struct Collected {
-    FrontMesh mesh;
-    std::vector<std::int32_t> ownerCell, part;
-    std::vector<std::uint8_t> level, pieces;
-    std::vector<FrontMesh::VertexHandle> polygon;
-    std::size_t group = 0; // the first face of the present lattice face
+using Index = std::size_t;
 
-    void beginFace(const Front& front, std::size_t face) {
-        if (front.pieces[face] > 0) group = ownerCell.size();
+// Which new faces each face gives, and which sides.
+class Replacement {
+  public:
+    Replacement(const Front& front, const std::vector<FaceCut>& cuts) : front_(front), cutOf_(front.ownerCell.size(), nullptr), face_(cutOf_.size() + 1, 0), side_(cutOf_.size() + 1, 0) {
+        for (const FaceCut& cut : cuts) cutOf_[Index(cut.face)] = &cut;
+        parallelFor(cutOf_.size(), [&](Index f) {
+            face_[f] = cutOf_[f] ? cutOf_[f]->polygons.size() : 1;
+            if (cutOf_[f]) for (const auto& polygon : cutOf_[f]->polygons) side_[f] += polygon.size();
+            else side_[f] = front.mesh.valence(handle(f));
+        }, 2048);
+        exclusiveScan(face_), exclusiveScan(side_);
     }
-    void add(const Front& front, std::size_t face) {
-        if (!mesh.add_face(polygon).is_valid()) {
-            const Vec3 p = front.front[static_cast<std::size_t>(polygon[0].idx())];
-            throw Error(ErrorKind::internal, "the cut front is not manifold", fmt::format("({:g} {:g} {:g})", p.x, p.y, p.z), "please report the case");
-        }
-        ownerCell.push_back(front.ownerCell[face]);
-        part.push_back(front.part[face]);
-        level.push_back(front.level[face]);
-        pieces.push_back(0);
-        ++pieces[group];
+    Index faces() const { return face_.back(); }
+
+    Polygons polygons() const {
+        Polygons out;
+        out.vertices.resize(side_.back()), out.start.resize(faces() + 1);
+        out.start.back() = side_.back();
+        parallelFor(cutOf_.size(), [&](Index f) {
+            Index face = face_[f], side = side_[f];
+            const auto begin = [&] { out.start[face++] = side; };
+            if (!cutOf_[f]) {
+                begin();
+                for (auto v : front_.mesh.fv_range(handle(f))) out.vertices[side++] = v.idx();
+                return;
+            }
+            for (const auto& polygon : cutOf_[f]->polygons) {
+                begin();
+                for (const std::int32_t v : polygon) out.vertices[side++] = v;
+            }
+        }, 2048);
+        return out;
     }
+    // Each new face has the value of the old one.
+    template <class T>
+    std::vector<T> spread(const std::vector<T>& values) const {
+        std::vector<T> out(faces());
+        parallelFor(values.size(), [&](Index f) { std::fill(out.begin() + at(f), out.begin() + at(f + 1), values[f]); }, 2048);
+        return out;
+    }
+    // The first face of a lattice face counts them all.
+    std::vector<std::uint8_t> pieces() const {
+        std::vector<std::uint8_t> out(faces(), 0);
+        parallelFor(cutOf_.size(), [&](Index f) {
+            if (const Index n = front_.pieces[f]; n > 0) out[face_[f]] = static_cast<std::uint8_t>(face_[f + n] - face_[f]);
+        }, 2048);
+        return out;
+    }
+
+  private:
+    static FrontMesh::FaceHandle handle(Index f) { return FrontMesh::FaceHandle(static_cast<int>(f)); }
+    std::ptrdiff_t at(Index f) const { return static_cast<std::ptrdiff_t>(face_[f]); }
+    const Front& front_;
+    std::vector<const FaceCut*> cutOf_; // per face, null: stays
+    std::vector<Index> face_, side_;    // per face, and one more: its first new face, its first side
 };
 
 } // namespace
 
 void replaceFaces(Front& front, const std::vector<FaceCut>& cuts) {
     if (cuts.empty()) return;
-    const std::size_t faces = front.ownerCell.size();
-    Collected out;
-    out.mesh.reserve(front.mesh.n_vertices(), front.mesh.n_edges() + 2 * cuts.size(), faces + cuts.size());
-    for (auto v : front.mesh.vertices()) out.mesh.add_vertex(front.mesh.point(v));
-    auto cut = cuts.begin();
-    for (std::size_t f = 0; f < faces; ++f) {
-        out.beginFace(front, f);
-        if (cut != cuts.end() && static_cast<std::size_t>(cut->face) == f) {
-            for (const std::vector<std::int32_t>& vertices : cut->polygons) {
-                out.polygon.clear();
-                for (std::int32_t v : vertices) out.polygon.emplace_back(v);
-                out.add(front, f);
-            }
-            ++cut;
-            continue;
-        }
-        out.polygon.clear();
-        for (auto v : front.mesh.fv_range(FrontMesh::FaceHandle(static_cast<int>(f)))) out.polygon.push_back(v);
-        out.add(front, f);
-    }
-    front.mesh = std::move(out.mesh);
-    front.ownerCell = std::move(out.ownerCell);
-    front.part = std::move(out.part);
-    front.level = std::move(out.level);
-    front.pieces = std::move(out.pieces);
+    const Replacement replacement(front, cuts);
+    FrontMesh mesh = joinFaces(front.mesh.n_vertices(), [&](Index v) { return front.mesh.point(FrontMesh::VertexHandle(static_cast<int>(v))); }, replacement.polygons(), "the cut front is not manifold");
+    front.ownerCell = replacement.spread(front.ownerCell);
+    front.part = replacement.spread(front.part);
+    front.level = replacement.spread(front.level);
+    front.pieces = replacement.pieces();
+    front.mesh = std::move(mesh);
 }
 
 } // namespace i2b
