@@ -229,7 +229,7 @@ TEST(FitFront, SidesOfTheDomainStayPlanes) {
     forSettings(5, [&](Setting& s, unsigned seed) {
         FeatureGraph graph = buildFeatureGraph(s.painted.soup, FeatureOptions{});
         const std::vector<std::uint8_t> outside = s.front.outside;
-        const std::vector<Vec3> lattice = s.lattice.latticePoints();
+        const RawVector<Vec3> lattice = s.lattice.latticePoints();
         const Context context;
         fitFront(s.front, s.lattice, *s.painted.index, graph, FitOptions{}, context);
         EXPECT_EQ(s.front.validate(), "") << "seed " << seed;

@@ -27,7 +27,7 @@ bool isConvex(const std::vector<FaceShape>& faces) {
     return true;
 }
 
-std::vector<Faces> facesOf(const LatticeMesh& mesh, const std::vector<Vec3>& points) {
+std::vector<Faces> facesOf(const LatticeMesh& mesh, const RawVector<Vec3>& points) {
     std::vector<Faces> all;
     std::vector<std::uint8_t> isFront(points.size());
     for (std::int64_t s = 0; s < mesh.frontPointCount(); ++s) isFront[static_cast<std::size_t>(mesh.frontPoint(s).point)] = 1;
@@ -58,8 +58,8 @@ TEST(RandomCells, AreConvexOnceMiddlesAreRaised) {
     for (unsigned seed = 0; seed < 12; ++seed) {
         const CarvedAtRandom c(seed, {6, 5, 7}, 3, 1 + static_cast<int>(seed % 2), 0.08);
         const LatticeMesh mesh(c.grid, c.kept);
-        const std::vector<Vec3> lattice = mesh.latticePoints();
-        std::vector<Vec3> points = lattice;
+        const RawVector<Vec3> lattice = mesh.latticePoints();
+        RawVector<Vec3> points = lattice;
         raiseMiddles(mesh, points);
         const std::vector<Faces> flat = facesOf(mesh, lattice), raised = facesOf(mesh, points);
         for (std::size_t i = 0; i < flat.size(); ++i) {
@@ -80,8 +80,8 @@ TEST_P(RandomLevels, MoveMiddlesLittleAndNoneOnTheFront) {
     for (unsigned seed = 20; seed < 24; ++seed) {
         const CarvedAtRandom c(seed, {6, 5, 7}, 3, 1, 0.08, GetParam());
         const LatticeMesh mesh(c.grid, c.kept);
-        const std::vector<Vec3> lattice = mesh.latticePoints();
-        std::vector<Vec3> points = lattice;
+        const RawVector<Vec3> lattice = mesh.latticePoints();
+        RawVector<Vec3> points = lattice;
         raiseMiddles(mesh, points);
         const Vec3 base = mesh.lattice().base;
         for (std::size_t p = 0; p < points.size(); ++p) {

@@ -20,7 +20,7 @@ TEST_P(RandomFront, IsManifoldAndExtrudes) {
         const CarvedAtRandom c(seed, {5, 6, 4}, 1 + static_cast<int>(seed % 3),
                                1 + static_cast<int>(seed / 3 % 2), 0.05 + 0.05 * (seed % 7), seed % 2 == 1);
         const LatticeMesh lattice(c.grid, c.kept);
-        const std::vector<Vec3> core = lattice.latticePoints();
+        const RawVector<Vec3> core = lattice.latticePoints();
         const Front front = buildFront(lattice, 0.07);
         ASSERT_EQ(front.validate(), "") << "seed " << seed;
         const Box domain = lattice.lattice().domain();

@@ -100,7 +100,7 @@ class Conformity {
     }
 
     const LatticeMesh& mesh_;
-    std::vector<Vec3> points_;
+    RawVector<Vec3> points_;
     std::map<std::pair<std::int64_t, std::int64_t>, std::vector<std::vector<std::int32_t>>> shared_;
     std::vector<std::map<std::pair<std::int32_t, std::int32_t>, int>> edges_;
     std::vector<double> volume_, expected_;
@@ -183,7 +183,7 @@ TEST(LatticeMesh, CornersLieWhereTheirBitsSay) {
     KeptCells all;
     all.levels.push_back(grid.levels[0].cells);
     const LatticeMesh mesh(grid, all);
-    const std::vector<Vec3> points = mesh.latticePoints();
+    const RawVector<Vec3> points = mesh.latticePoints();
     LatticeMesh::Reader reader(mesh);
     std::array<std::int32_t, 8> corners;
     ASSERT_TRUE(reader.corners(0, {1, 0, 0}, corners));

@@ -25,7 +25,7 @@ inline PolyMesh meshOfCells(std::vector<Vec3> points, const std::vector<CellLoop
             faces[key].push_back({static_cast<std::int32_t>(c), loop});
         }
     PolyMesh mesh;
-    mesh.points = std::move(points);
+    mesh.points.assign(points.begin(), points.end());
     mesh.cells = static_cast<std::int32_t>(cells.size());
     mesh.faceOffsets.push_back(0);
     const auto add = [&](const Side& side) {

@@ -15,7 +15,7 @@ struct Divided {
     explicit Divided(unsigned seed)
         : carved(seed, {5, 6, 4}, 2, 1, 0.15), lattice(carved.grid, carved.kept), front(buildFront(lattice, startThickness)) {
         divideAtRandom(front, seed, 0.2);
-        const std::vector<Vec3> at = lattice.latticePoints();
+        const RawVector<Vec3> at = lattice.latticePoints();
         std::set<std::int32_t> ofFront(front.corePoint.begin(), front.corePoint.end());
         for (std::int32_t p = front.corePoints - 1; p >= 0; p -= 3) { // descending: any order will do
             if (ofFront.contains(p)) continue;

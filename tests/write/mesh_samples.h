@@ -104,7 +104,7 @@ inline PolyMesh meshOf(std::vector<Vec3> points,
     std::stable_sort(sides.begin(), sides.end(),
                      [&](const Side& a, const Side& b) { return order(a) < order(b); });
     PolyMesh mesh;
-    mesh.points = std::move(points);
+    mesh.points.assign(points.begin(), points.end());
     mesh.cells = static_cast<std::int32_t>(cells.size());
     mesh.faceOffsets.push_back(0);
     for (const Side& s : sides) {

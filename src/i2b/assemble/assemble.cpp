@@ -90,7 +90,7 @@ class Assembler {
     void fill(PolyMesh& mesh);
     void wallPatches(PolyMesh& mesh);
     void cellData(PolyMesh& mesh) const;
-    std::vector<Vec3> placePoints() const;
+    RawVector<Vec3> placePoints() const;
 
     struct Chunk { // of nodes of one level, or of front faces (level -1)
         int level = -1;
@@ -342,9 +342,9 @@ void Assembler::cellData(PolyMesh& mesh) const {
 }
 
 // Core points where the lattice (or, at a jump in level, little beside it) or the fit has them, then the layers' points, stack by stack.
-std::vector<Vec3> Assembler::placePoints() const {
+RawVector<Vec3> Assembler::placePoints() const {
     const Front& front = in_.front;
-    std::vector<Vec3> points = in_.lattice.latticePoints();
+    RawVector<Vec3> points = in_.lattice.latticePoints(in_.front.inserted.size() + in_.layers.points());
     raiseMiddles(in_.lattice, points);
     const auto core = static_cast<std::size_t>(corePoints_);
     points.resize(core + in_.layers.points());

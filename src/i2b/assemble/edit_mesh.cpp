@@ -1,5 +1,5 @@
 #include "i2b/assemble/edit_mesh.h"
-#include "i2b/core/parallel.h"
+#include "i2b/core/collect.h"
 #include <algorithm>
 
 namespace i2b {
@@ -7,11 +7,31 @@ namespace {
 
 using Index = std::size_t;
 
+// Sums of count(i) before each i, and of all at the end.
+template <class Count>
+RawVector<std::uint32_t> sumsBefore(Index n, const Count& count) {
+    constexpr Index chunk = 16384;
+    RawVector<std::uint32_t> sums(n + 1);
+    std::vector<std::uint32_t> first((n + chunk - 1) / chunk);
+    parallelChunks(n, chunk, [&](Index begin, Index end, Index c) {
+        std::uint32_t sum = 0;
+        for (Index i = begin; i < end; ++i) sum += count(i);
+        first[c] = sum;
+    });
+    sums[n] = exclusiveScan(first);
+    parallelChunks(n, chunk, [&](Index begin, Index end, Index c) {
+        std::uint32_t sum = first[c];
+        for (Index i = begin; i < end; ++i) sums[i] = sum, sum += count(i);
+    });
+    return sums;
+}
+
 // Numbers of the cells that are left.
 std::vector<std::int32_t> numberCells(const std::vector<std::int32_t>& groups, std::int32_t& count) {
+    const RawVector<std::uint32_t> before = sumsBefore(groups.size(), [&](Index c) { return Index(groups[c]) == c ? 1u : 0u; });
     std::vector<std::int32_t> number(groups.size());
-    count = 0;
-    for (Index c = 0; c < groups.size(); ++c) number[c] = Index(groups[c]) == c ? count++ : number[Index(groups[c])];
+    parallelFor(groups.size(), [&](Index c) { number[c] = static_cast<std::int32_t>(before[Index(groups[c])]); }, 8192);
+    count = static_cast<std::int32_t>(before[groups.size()]);
     return number;
 }
 
@@ -20,22 +40,29 @@ class FaceOrder {
   public:
     FaceOrder(const PolyMesh& mesh, const std::vector<std::int32_t>& groups) : mesh_(mesh), groups_(groups) {
         const Index internal = mesh.neighbour.size();
-        std::vector<std::uint32_t> plain, changed;
-        plain.reserve(Index(mesh.faces()));
-        for (Index f = 0; f < internal; ++f) {
-            const Sides s = sides(f);
-            if (s.low == s.high) continue;
-            (s.low == mesh.owner[f] && s.high == mesh.neighbour[f] ? plain : changed).push_back(static_cast<std::uint32_t>(f));
-        }
+        const auto pick = [&](bool wantPlain) {
+            return collect<std::uint32_t>(internal, [&](Index f, const auto& put) {
+                const Sides s = sides(f);
+                if (s.low != s.high && (s.low == mesh.owner[f] && s.high == mesh.neighbour[f]) == wantPlain) put(static_cast<std::uint32_t>(f));
+            });
+        };
         const auto before = [this](std::uint32_t a, std::uint32_t b) {
             const Sides s = sides(a), t = sides(b);
             return s.low != t.low ? s.low < t.low : s.high < t.high;
         };
+        const RawVector<std::uint32_t> plain = pick(true);
+        RawVector<std::uint32_t> changed = pick(false); // few
         std::stable_sort(changed.begin(), changed.end(), before);
-        order_.resize(plain.size() + changed.size());
-        std::merge(plain.begin(), plain.end(), changed.begin(), changed.end(), order_.begin(), before);
-        internal_ = order_.size();
-        for (Index f = internal; f < Index(mesh.faces()); ++f) order_.push_back(static_cast<std::uint32_t>(f));
+        internal_ = plain.size() + changed.size();
+        order_.resize(internal_ + Index(mesh.faces()) - internal);
+        std::vector<Index> at; // of the plain ones, where those that changed go in: after those that are alike
+        for (const std::uint32_t f : changed) at.push_back(static_cast<Index>(std::upper_bound(plain.begin(), plain.end(), f, before) - plain.begin()));
+        parallelFor(changed.size() + 1, [&](Index k) { // the plain ones up to the k-th, and that one
+            const Index from = k == 0 ? 0 : at[k - 1], to = k == changed.size() ? plain.size() : at[k];
+            parallelFor(to - from, [&](Index i) { order_[from + i + k] = plain[from + i]; }, 16384);
+            if (k < changed.size()) order_[to + k] = changed[k];
+        }, 64);
+        parallelFor(order_.size() - internal_, [&](Index i) { order_[internal_ + i] = static_cast<std::uint32_t>(internal + i); }, 16384);
     }
     Index size() const { return order_.size(); }
     Index internal() const { return internal_; }
@@ -51,7 +78,7 @@ class FaceOrder {
 
     const PolyMesh& mesh_;
     const std::vector<std::int32_t>& groups_;
-    std::vector<std::uint32_t> order_;
+    RawVector<std::uint32_t> order_;
     Index internal_ = 0;
 };
 
@@ -77,14 +104,12 @@ class Divisions {
 };
 
 // Where what comes of each face in the new order begins; one more at the end.
-std::vector<std::uint32_t> scan(const FaceOrder& order, const auto& count) {
-    std::vector<std::uint32_t> begin(order.size() + 1, 0);
-    for (Index i = 0; i < order.size(); ++i) begin[i + 1] = begin[i] + count(order.face(i));
-    return begin;
+RawVector<std::uint32_t> scan(const FaceOrder& order, const auto& count) {
+    return sumsBefore(order.size(), [&](Index i) { return count(order.face(i)); });
 }
 
-void rewriteVertices(PolyMesh& mesh, const FaceOrder& order, const Divisions& divisions, const std::vector<std::uint32_t>& firstPiece) {
-    const std::vector<std::uint32_t> first = scan(order, [&](Index f) { return divisions.vertices(f); });
+void rewriteVertices(PolyMesh& mesh, const FaceOrder& order, const Divisions& divisions, const RawVector<std::uint32_t>& firstPiece) {
+    const RawVector<std::uint32_t> first = scan(order, [&](Index f) { return divisions.vertices(f); });
     RawVector<std::int32_t> vertices(first.back());
     RawVector<std::uint32_t> offsets(firstPiece.back() + 1);
     offsets.back() = first.back();
@@ -110,7 +135,7 @@ void rewriteVertices(PolyMesh& mesh, const FaceOrder& order, const Divisions& di
     mesh.faceOffsets = std::move(offsets);
 }
 
-void rewriteSides(PolyMesh& mesh, const FaceOrder& order, const std::vector<std::int32_t>& number, const std::vector<std::uint32_t>& firstPiece) {
+void rewriteSides(PolyMesh& mesh, const FaceOrder& order, const std::vector<std::int32_t>& number, const RawVector<std::uint32_t>& firstPiece) {
     RawVector<std::int32_t> owner(firstPiece.back()), neighbour(firstPiece[order.internal()]);
     parallelFor(order.size(), [&](Index i) {
         const std::int32_t own = number[Index(mesh.owner[order.face(i)])];
@@ -133,7 +158,7 @@ void rewriteSides(PolyMesh& mesh, const FaceOrder& order, const std::vector<std:
 void rewriteFaces(PolyMesh& mesh, const MeshEdits& edits, const std::vector<std::int32_t>& number) {
     const FaceOrder order(mesh, edits.groups);
     const Divisions divisions(mesh, edits);
-    const std::vector<std::uint32_t> firstPiece = scan(order, [&](Index f) { return divisions.pieces(f); });
+    const RawVector<std::uint32_t> firstPiece = scan(order, [&](Index f) { return divisions.pieces(f); });
     rewriteVertices(mesh, order, divisions, firstPiece);
     rewriteSides(mesh, order, number, firstPiece);
 }

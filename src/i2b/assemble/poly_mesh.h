@@ -26,7 +26,7 @@ struct CellZone {
 };
 
 struct PolyMesh {
-    std::vector<Vec3> points;                 // m
+    RawVector<Vec3> points;                   // m
     RawVector<std::uint32_t> faceOffsets;     // faces + 1
     RawVector<std::int32_t> faceVertices;
     RawVector<std::int32_t> owner;            // per face

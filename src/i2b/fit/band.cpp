@@ -82,12 +82,14 @@ Csr<BandEdge> edgesOf(std::size_t rows, const std::vector<BandPieces>& pieces, c
     return edges;
 }
 
-// In the order of the pieces.
-void appendCorners(Band& band, const std::vector<BandPieces>& pieces) {
+// In the order of the pieces; room: for how many more memory is taken at once.
+void appendCorners(Band& band, const std::vector<BandPieces>& pieces, std::size_t room = 0) {
     std::vector<std::size_t> first;
     for (const BandPieces& p : pieces) first.push_back(p.corners.size());
     const std::size_t before = band.corners.size();
-    band.corners.resize(before + exclusiveScan(first));
+    const std::size_t count = before + exclusiveScan(first);
+    band.corners.reserve(count + room);
+    band.corners.resize(count);
     parallelFor(pieces.size(), [&](std::size_t p) {
         std::copy(pieces[p].corners.begin(), pieces[p].corners.end(), band.corners.begin() + static_cast<std::ptrdiff_t>(before + first[p]));
     }, 1);
@@ -262,7 +264,7 @@ Band buildBand(const LatticeMesh& mesh, const Front& front, int rings, const Wan
             pieces[before + chunk].settle();
         });
     }
-    appendCorners(band, pieces);
+    appendCorners(band, pieces, 2 * front.mesh.n_halfedges() * 5 / 4); // those of the prisms, of vertices put in later, too
     band.coreCorners = band.corners.size();
     band.parents = parentsOf(band.nodes(), pieces);
     for (BandPieces& p : pieces) p.corners = {}, p.hanging = {};

@@ -1,5 +1,5 @@
 #include "i2b/fit/features.h"
-#include "i2b/core/parallel.h"
+#include "i2b/core/collect.h"
 #include "i2b/fit/between.h"
 #include "i2b/fit/fit.h"
 #include "i2b/front/replace_faces.h"
@@ -107,6 +107,54 @@ Crossing besideLine(const Band& band, const SurfaceIndex& index, const FeatureIn
 
 bool hangs(const Band& band, std::size_t wall) { return !band.parents[static_cast<std::size_t>(band.frontNode[wall])].empty(); }
 
+// What wall edges cross.
+struct EdgeLook {
+    const Band& band;
+    const SurfaceIndex& index;
+    const FeatureIndex& features;
+    const std::vector<Vec3>& x;
+    const std::vector<Foot>& feet;
+    const std::vector<Snap>& snaps;
+
+    std::array<Crossing, 2> crossingsOf(std::int32_t p, std::int32_t q) const {
+        const auto a = static_cast<std::size_t>(p), b = static_cast<std::size_t>(q);
+        const bool heldA = snaps[a].kind != SnapKind::none, heldB = snaps[b].kind != SnapKind::none;
+        if ((heldA && heldB) || hangs(band, a) || hangs(band, b)) return {};
+        if (heldA) return {besideLine(band, index, features, x, feet[b], snaps[a], p, q)};
+        if (heldB) return {besideLine(band, index, features, x, feet[a], snaps[b], q, p)};
+        if (turns(feet[a], feet[b])) return {acrossTurn(p, q)};
+        return feet[a].found && feet[b].found ? betweenAlike(p, q) : std::array<Crossing, 2>{};
+    }
+
+  private:
+    const Vec3& fluidAt(std::int32_t p) const { return x[static_cast<std::size_t>(band.frontNode[static_cast<std::size_t>(p)])]; }
+    double hOf(std::int32_t p, std::int32_t q) const { return std::max(band.h[static_cast<std::size_t>(p)], band.h[static_cast<std::size_t>(q)]); }
+
+    // Its ends stand on different sides of a line.
+    Crossing acrossTurn(std::int32_t p, std::int32_t q) const {
+        const Foot &a = feet[static_cast<std::size_t>(p)], &b = feet[static_cast<std::size_t>(q)];
+        const Between between = lineBetween(index, features, a, b, fluidAt(p), hOf(p, q));
+        Crossing crossing = crossingOf(band, index, features, x, between, p, q, between.isOfBoth ? reach : otherReach);
+        if (between.isOfBoth || crossing.node >= 0) return crossing;
+        crossing = crossingOf(band, index, features, x, meetingOf(index, features, a, b, fluidAt(p), hOf(p, q)), p, q, otherReach);
+        return crossing.node < 0 ? crossingOf(band, index, features, x, between, p, q) : crossing;
+    }
+    // Its ends do not tell them apart: what lies between may.
+    std::array<Crossing, 2> betweenAlike(std::int32_t p, std::int32_t q) const {
+        const auto a = static_cast<std::size_t>(p), b = static_cast<std::size_t>(q);
+        const double h = hOf(p, q);
+        const ClosestPoint near = index.closeEnough((x[a] + x[b]) * 0.5, steps * h, flat * h); // most edges lie on what they stand on
+        std::array<Crossing, 2> found;
+        if (!near) {
+            found = stepOf(band, index, features, x, feet, p, q);
+            if (found[0].node >= 0 || found[1].node >= 0) return found;
+        }
+        if (near.distance > flat * h) found[0] = crossingOf(band, index, features, x, lineOver(index, features, feet[a].point, feet[b].point, fluidAt(p), h), p, q);
+        if (found[0].node < 0 && feet[a].part != feet[b].part) found[0] = crossingOf(band, index, features, x, borderBetween(index, feet[a], feet[b], fluidAt(p), h), p, q);
+        return found;
+    }
+};
+
 std::size_t snapCorners(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Foot>& feet, const std::vector<Vec3>& x,
                         std::vector<Snap>& snaps) {
     struct Candidate {
@@ -115,8 +163,7 @@ std::size_t snapCorners(const Band& band, const SurfaceIndex& index, const Featu
         std::int32_t node;
         Vec3 point;
     };
-    std::vector<Candidate> list(band.walls, Candidate{0, ~0u, -1, {}});
-    parallelFor(band.walls, [&](std::size_t n) {
+    RawVector<Candidate> list = collect<Candidate>(band.walls, [&](std::size_t n, const auto& put) {
         if (hangs(band, n) || band.outside[n] != 0) return;
         const ClosestPoint c = features.closestCorner(x[n], tipReach * band.h[n]);
         if (!c || !isSeen(index, x[static_cast<std::size_t>(band.frontNode[n])], c.point, band.h[n])) return;
@@ -134,9 +181,8 @@ std::size_t snapCorners(const Band& band, const SurfaceIndex& index, const Featu
         const auto isBefore = [&](const Foot& f) { return dot(f.point - c.point, out) > 0; };
         if (c.distance > cornerReach * band.h[n] && (found < 3 || !std::all_of(sides.begin(), sides.end(), isBefore) || features.isCrowded(c, band.h[n]))) return;
         const double turned = 1 - dot(out, normalized(x[static_cast<std::size_t>(band.frontNode[n])] - c.point));
-        list[n] = {c.distance / band.h[n] + besideCorner * turned, c.triangle, static_cast<std::int32_t>(n), c.point};
-    });
-    std::erase_if(list, [](const Candidate& c) { return c.node < 0; });
+        put({c.distance / band.h[n] + besideCorner * turned, c.triangle, static_cast<std::int32_t>(n), c.point});
+    }, 256);
     std::stable_sort(list.begin(), list.end(), [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
     std::set<std::uint32_t> taken; // one node a corner
     for (const Snap& s : snaps) {
@@ -225,42 +271,12 @@ std::size_t snapToFeatures(const Band& band, const Front& front, const SurfaceIn
     std::vector<Foot> feet(band.walls);
     parallelFor(band.walls, [&](std::size_t n) { feet[n] = footOf(band, index, x, n); });
     std::size_t added = snapCorners(band, index, features, feet, x, snaps);
-    std::vector<Crossing> crossings(2 * front.mesh.n_edges());
-    parallelFor(front.mesh.n_edges(), [&](std::size_t e) {
+    const EdgeLook look{band, index, features, x, feet, snaps};
+    RawVector<Crossing> crossings = collect<Crossing>(front.mesh.n_edges(), [&](std::size_t e, const auto& put) {
         const auto he = front.mesh.halfedge_handle(FrontMesh::EdgeHandle(static_cast<int>(e)), 0);
-        const std::int32_t p = front.mesh.from_vertex_handle(he).idx(), q = front.mesh.to_vertex_handle(he).idx();
-        const auto a = static_cast<std::size_t>(p), b = static_cast<std::size_t>(q);
-        const bool heldA = snaps[a].kind != SnapKind::none, heldB = snaps[b].kind != SnapKind::none;
-        if ((heldA && heldB) || hangs(band, a) || hangs(band, b)) return;
-        if (heldA || heldB) {
-            crossings[2 * e] = heldA ? besideLine(band, index, features, x, feet[b], snaps[a], p, q) : besideLine(band, index, features, x, feet[a], snaps[b], q, p);
-            return;
-        }
-        if (turns(feet[a], feet[b])) {
-            const Vec3& fluid = x[static_cast<std::size_t>(band.frontNode[a])];
-            const double h = std::max(band.h[a], band.h[b]);
-            const Between between = lineBetween(index, features, feet[a], feet[b], fluid, h);
-            Crossing& crossing = crossings[2 * e];
-            crossing = crossingOf(band, index, features, x, between, p, q, between.isOfBoth ? reach : otherReach);
-            if (between.isOfBoth || crossing.node >= 0) return;
-            crossing = crossingOf(band, index, features, x, meetingOf(index, features, feet[a], feet[b], fluid, h), p, q, otherReach);
-            if (crossing.node < 0) crossing = crossingOf(band, index, features, x, between, p, q);
-        } else if (feet[a].found && feet[b].found) {
-            const Vec3& fluid = x[static_cast<std::size_t>(band.frontNode[a])];
-            const double h = std::max(band.h[a], band.h[b]);
-            const ClosestPoint near = index.closeEnough((x[a] + x[b]) * 0.5, steps * h, flat * h); // most edges lie on what they stand on
-            if (!near) {
-                const std::array<Crossing, 2> ends = stepOf(band, index, features, x, feet, p, q);
-                crossings[2 * e] = ends[0], crossings[2 * e + 1] = ends[1];
-                if (ends[0].node >= 0 || ends[1].node >= 0) return;
-            }
-            if (near.distance > flat * h)
-                crossings[2 * e] = crossingOf(band, index, features, x, lineOver(index, features, feet[a].point, feet[b].point, fluid, h), p, q);
-            if (crossings[2 * e].node >= 0 || feet[a].part == feet[b].part) return;
-            crossings[2 * e] = crossingOf(band, index, features, x, borderBetween(index, feet[a], feet[b], fluid, h), p, q);
-        }
-    });
-    std::erase_if(crossings, [](const Crossing& c) { return c.node < 0; });
+        for (const Crossing& c : look.crossingsOf(front.mesh.from_vertex_handle(he).idx(), front.mesh.to_vertex_handle(he).idx()))
+            if (c.node >= 0) put(c);
+    }, 256);
     std::stable_sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) { return a.distance < b.distance; });
     const auto isTaken = [&](const Crossing& c) {
         const std::span<const BandEdge> edges = band.edges[static_cast<std::size_t>(c.node)];

@@ -1,5 +1,5 @@
 #include "i2b/fit/folds.h"
-#include "i2b/core/parallel.h"
+#include "i2b/core/collect.h"
 #include "i2b/fit/between.h"
 #include <algorithm>
 
@@ -143,9 +143,9 @@ std::size_t snapFolds(const Band& band, const Front& front, const SurfaceIndex& 
     const FoldFinder finder(band, front, index, features, x, snaps);
     std::size_t all = 0, added = 1;
     for (int round = 0; round < rounds && added > 0; ++round) {
-        std::vector<Fold> folds(band.walls);
-        parallelFor(band.walls, [&](std::size_t n) { folds[n] = finder.foldAt(n); }, 1024);
-        std::erase_if(folds, [](const Fold& f) { return f.node < 0; });
+        RawVector<Fold> folds = collect<Fold>(band.walls, [&](std::size_t n, const auto& put) {
+            if (const Fold fold = finder.foldAt(n); fold.node >= 0) put(fold);
+        }, 1024);
         std::stable_sort(folds.begin(), folds.end(), [](const Fold& a, const Fold& b) { return a.distance < b.distance; });
         added = 0;
         for (const Fold& f : folds) {

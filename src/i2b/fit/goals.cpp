@@ -1,4 +1,5 @@
 #include "i2b/core/parallel.h"
+#include "i2b/core/raw_vector.h"
 #include "i2b/fit/corner.h"
 #include "i2b/fit/fit.h"
 #include <algorithm>
@@ -29,7 +30,13 @@ ClosestPoint closestWithinSides(const SurfaceIndex& index, const Vec3& q, std::u
     return c;
 }
 
-Vec3 weightedMean(std::span<const BandEdge> edges, const std::vector<Vec3>& x) {
+RawVector<Vec3> copyOf(const std::vector<Vec3>& x) {
+    RawVector<Vec3> copy(x.size());
+    parallelFor(x.size(), [&](std::size_t i) { copy[i] = x[i]; }, 8192);
+    return copy;
+}
+
+Vec3 weightedMean(std::span<const BandEdge> edges, const RawVector<Vec3>& x) {
     Vec3 sum;
     double weight = 0;
     for (const BandEdge& e : edges) {
@@ -40,7 +47,7 @@ Vec3 weightedMean(std::span<const BandEdge> edges, const std::vector<Vec3>& x) {
 }
 
 // Mean of the neighbours' moves: a lattice stays a lattice, whatever its levels.
-Vec3 meanMove(const Band& band, std::span<const BandEdge> edges, const std::vector<Vec3>& x) {
+Vec3 meanMove(const Band& band, std::span<const BandEdge> edges, const RawVector<Vec3>& x) {
     Vec3 sum;
     double weight = 0;
     for (const BandEdge& e : edges) {
@@ -60,7 +67,7 @@ Vec3 stoppedByGeometry(const SurfaceIndex& index, const Vec3& from, const Vec3& 
 bool isFront(const Band& band, std::size_t n) { return n >= band.walls && n < band.walls + band.fronts; }
 
 void smoothSurface(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& start, std::vector<Vec3>& x) {
-    const std::vector<Vec3> old = x;
+    const RawVector<Vec3> old = copyOf(x);
     parallelFor(band.fronts, [&](std::size_t i) {
         const std::size_t n = band.walls + i;
         Vec3 sum;
@@ -77,7 +84,7 @@ void smoothSurface(const Band& band, const SurfaceIndex& index, const std::vecto
 }
 
 void projectWalls(const Band& band, const SurfaceIndex& index, std::vector<Vec3>& x, bool first) {
-    const std::vector<Vec3> old = x;
+    const RawVector<Vec3> old = copyOf(x);
     parallelFor(band.walls, [&](std::size_t b) {
         const Vec3& f = old[static_cast<std::size_t>(band.frontNode[b])];
         Vec3 q = f;
@@ -102,7 +109,7 @@ void projectWalls(const Band& band, const SurfaceIndex& index, std::vector<Vec3>
 }
 
 void relaxVolume(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& start, std::vector<Vec3>& x) {
-    const std::vector<Vec3> old = x;
+    const RawVector<Vec3> old = copyOf(x);
     parallelFor(band.movable - band.walls, [&](std::size_t i) {
         const std::size_t n = band.walls + i;
         const Vec3 to = isFront(band, n) ? weightedMean(band.edges[n], old) : band.start[n] + meanMove(band, band.edges[n], old);
@@ -110,7 +117,7 @@ void relaxVolume(const Band& band, const SurfaceIndex& index, const std::vector<
         x[n] = isFront(band, n) ? stoppedByGeometry(index, start[n], moved) : moved;
     });
     // Nodes that hang on a coarse edge or face stay on it; parents never hang themselves on the same level.
-    const std::vector<Vec3> relaxed = x;
+    const RawVector<Vec3> relaxed = copyOf(x);
     parallelFor(band.movable - band.walls, [&](std::size_t i) {
         const std::size_t n = band.walls + i;
         const std::span<const std::int32_t> parents = band.parents[n];

@@ -1,5 +1,5 @@
 #include "i2b/fit/insert.h"
-#include "i2b/core/parallel.h"
+#include "i2b/core/collect.h"
 #include "i2b/fit/crossings.h"
 #include "i2b/fit/fit.h"
 #include "i2b/fit/front_room.h"
@@ -76,7 +76,7 @@ class Inserter {
     const WallMarks marks_;
     std::vector<EdgeCrossing> crossings_;
     std::vector<std::int32_t> crossingOf_;  // per edge of the front; -1: none
-    std::vector<std::int32_t> faces_;        // that may be cut, ascending
+    RawVector<std::int32_t> faces_;          // that may be cut, ascending
 };
 
 Ring Inserter::ringOf(std::size_t face) const {
@@ -353,15 +353,14 @@ void Inserter::lookForCrossings() {
     std::erase_if(crossings_, [&](const EdgeCrossing& c) { return isOfWholeFace(c.edge); });
     crossingOf_.assign(front_.mesh.n_edges(), -1);
     for (std::size_t i = 0; i < crossings_.size(); ++i) crossingOf_[std::size_t(crossings_[i].edge)] = static_cast<std::int32_t>(i);
-    faces_.clear();
-    for (std::size_t f = 0; f < front_.ownerCell.size(); ++f) {
+    faces_ = collect<std::int32_t>(front_.ownerCell.size(), [&](std::size_t f, const auto& put) {
         std::size_t stars = 0, crossed = 0;
         for (auto he : front_.mesh.fh_range(FrontMesh::FaceHandle(static_cast<int>(f)))) {
             stars += marks_.onLine[std::size_t(front_.mesh.from_vertex_handle(he).idx())];
             crossed += crossingOf_[std::size_t(front_.mesh.edge_handle(he).idx())] >= 0;
         }
-        if (!front_.staysWhole(f) && (crossed > 0 || stars > 1)) faces_.push_back(static_cast<std::int32_t>(f));
-    }
+        if ((crossed > 0 || stars > 1) && !front_.staysWhole(f)) put(static_cast<std::int32_t>(f));
+    }, 2048);
 }
 
 std::size_t Inserter::run() {

@@ -52,7 +52,7 @@ std::vector<Coarser> coarserThan(const LatticeMesh& mesh, int pointLevel, std::s
 
 } // namespace
 
-void raiseMiddles(const LatticeMesh& mesh, std::vector<Vec3>& points) {
+void raiseMiddles(const LatticeMesh& mesh, RawVector<Vec3>& points) {
     const std::array<LeafBits, 3> middles = middlesOfFaces();
     for (int l = 1; l < mesh.pointLevels(); ++l) {
         const RankedMask& ranked = mesh.points(l);

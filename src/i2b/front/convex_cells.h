@@ -11,6 +11,6 @@ inline constexpr double middleOut = 1.0 / 1024; // of the coarser cell's edge: 0
 
 // points: of the lattice, as latticePoints() gives them (m). Moves those in the middle of a coarser kept cell's face;
 // points of the front stay.
-void raiseMiddles(const LatticeMesh& mesh, std::vector<Vec3>& points);
+void raiseMiddles(const LatticeMesh& mesh, RawVector<Vec3>& points);
 
 } // namespace i2b

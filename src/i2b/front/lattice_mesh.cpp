@@ -55,8 +55,10 @@ LatticeMesh::LatticeMesh(const CellGrid& grid, const KeptCells& kept) : grid_(gr
     });
 }
 
-std::vector<Vec3> LatticeMesh::latticePoints() const {
-    std::vector<Vec3> positions(static_cast<std::size_t>(pointCount()));
+RawVector<Vec3> LatticeMesh::latticePoints(std::size_t room) const {
+    RawVector<Vec3> positions;
+    positions.reserve(static_cast<std::size_t>(pointCount()) + room);
+    positions.resize(static_cast<std::size_t>(pointCount()));
     for (int l = 0; l < pointLevels(); ++l) {
         points(l).forEach([&](std::int64_t rank, const Index3& v) {
             positions[static_cast<std::size_t>(rank)] = lattice().corner(l, v);

@@ -8,6 +8,7 @@
 #pragma once
 #include "i2b/carve/kept_cells.h"
 #include "i2b/carve/vertices.h"
+#include "i2b/core/raw_vector.h"
 #include "i2b/grid/ranked_mask.h"
 
 namespace i2b {
@@ -54,7 +55,7 @@ class LatticeMesh {
     std::int64_t frontPointCount() const { return static_cast<std::int64_t>(front_.size()); }
 
     // Positions of all core points on the lattice, m.
-    std::vector<Vec3> latticePoints() const;
+    RawVector<Vec3> latticePoints(std::size_t room = 0) const; // room: memory for so many more
 
     // Cached look-ups: one Reader per thread.
     class Reader {

@@ -59,7 +59,7 @@ void listChecks(Measurement& m) {
     add("lowVolRatioFaces", Kind::faces, t.lowVolRatioFaces, failing(t.lowVolRatioFaces));
 }
 
-Box pointBox(const std::vector<Vec3>& points) {
+Box pointBox(std::span<const Vec3> points) {
     return orderedReduce(
         points.size(), Box{},
         [&](Index begin, Index end) {

@@ -14,7 +14,7 @@ using Index = std::size_t;
 // shared out by their high bits first, so that the table of bits that tells which comes twice is small and near.
 class Crowded {
   public:
-    Crowded(const std::vector<Vec3>& points, double reach) : points_(points), reach_(reach) {}
+    Crowded(std::span<const Vec3> points, double reach) : points_(points), reach_(reach) {}
 
     std::vector<std::int32_t> find() const { // in no order, with repetitions
         const Index chunks = (points_.size() + chunk - 1) / chunk;
@@ -102,7 +102,7 @@ class Crowded {
         return static_cast<std::uint32_t>(h >> 32);
     }
 
-    const std::vector<Vec3>& points_;
+    std::span<const Vec3> points_;
     double reach_;
 };
 
@@ -113,7 +113,7 @@ struct Near {
 // Marks the ends of all pairs closer than the distance. Sorted along an odd direction, near points are near
 // in the list, and regular meshes do not put whole planes of points at one key. checkMesh names a pair only
 // if the squared distances of its points from the origin differ by less than near2 too; hence the last test.
-void markNear(const std::vector<Vec3>& points, double near2, std::vector<std::uint8_t>& marks) {
+void markNear(std::span<const Vec3> points, double near2, std::vector<std::uint8_t>& marks) {
     const Vec3 direction = normalized({0.5377, 0.6180339887, 0.5731});
     if (!(near2 > 0)) return; // nothing is nearer
     const double reach = std::sqrt(near2) * 1.001;

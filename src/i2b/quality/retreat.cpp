@@ -1,4 +1,6 @@
 #include "i2b/quality/retreat.h"
+#include "i2b/core/parallel.h"
+#include "i2b/core/raw_vector.h"
 #include <algorithm>
 
 namespace i2b {
@@ -23,17 +25,17 @@ class Nodes {
   public:
     Nodes(const Front& front, const LatticeMesh& lattice, LayerStack& layers, double thickness)
         : front_(front), layers_(layers), core_(static_cast<std::size_t>(front.corePoints) + front.inserted.size()) {
-        const std::vector<Vec3> start = lattice.latticePoints();
+        const RawVector<Vec3> start = lattice.latticePoints();
         const auto startOf = [&](std::int32_t point) { return start[static_cast<std::size_t>(point)]; };
         const std::size_t fans = front.front.size();
-        behind_.reserve(front.movedPoints.size()), ahead_.reserve(fans), wall_.reserve(fans);
-        for (std::size_t i = 0; i < front.movedPoints.size(); ++i) behind_.push_back({startOf(front.movedPoints[i]), front.movedTo[i]});
-        for (std::size_t v = 0; v < front.firstInserted(); ++v) {
+        behind_.resize(front.movedPoints.size()), ahead_.resize(front.firstInserted()), wall_.reserve(fans), wall_.resize(front.firstInserted());
+        parallelFor(behind_.size(), [&](std::size_t i) { behind_[i] = {startOf(front.movedPoints[i]), front.movedTo[i]}; }, 2048);
+        parallelFor(ahead_.size(), [&](std::size_t v) {
             const std::array<std::int8_t, 3>& d = front.direction[v];
             const Vec3 f = startOf(front.corePoint[v]);
-            ahead_.push_back({f, front.front[v]});
-            wall_.push_back({f + Vec3{double(d[0]), double(d[1]), double(d[2])} * (thickness * front.h[v]), front_.wall(v)});
-        }
+            ahead_[v] = {f, front.front[v]};
+            wall_[v] = {f + Vec3{double(d[0]), double(d[1]), double(d[2])} * (thickness * front.h[v]), front_.wall(v)};
+        }, 2048);
         for (const Front::Inserted& i : front.inserted) { // on an edge, of the front and of the wall, at the start
             const auto p = static_cast<std::size_t>(i.ends[0]), q = static_cast<std::size_t>(i.ends[1]);
             wall_.push_back({wall_[p].start + (wall_[q].start - wall_[p].start) * i.t, front_.wall(wall_.size())});
@@ -59,7 +61,7 @@ class Nodes {
         if (n >= core_ && !bend_.empty()) layers_.columns[n - core_].bend = bend_[n - core_] * value;
     }
     // Puts the mesh points of all nodes set since the last time where they belong; gives their numbers.
-    std::vector<std::int32_t> place(std::vector<Vec3>& points);
+    std::vector<std::int32_t> place(RawVector<Vec3>& points);
     void store(Front& front) const;
 
     std::vector<float> beta; // per node; to be changed by set()
@@ -80,14 +82,14 @@ class Nodes {
     const Front& front_;
     LayerStack& layers_;
     std::size_t core_;
-    std::vector<Path> behind_;             // as front.movedPoints
-    std::vector<Path> ahead_;              // per fan that the lattice has
-    std::vector<Path> wall_;               // per fan
+    RawVector<Path> behind_;             // as front.movedPoints
+    RawVector<Path> ahead_;              // per fan that the lattice has
+    RawVector<Path> wall_;               // per fan
     std::vector<float> bend_;              // per fan, of its column at the end of the fit; empty: all straight
     std::vector<std::uint8_t> touched_;    // per node
 };
 
-std::vector<std::int32_t> Nodes::place(std::vector<Vec3>& points) {
+std::vector<std::int32_t> Nodes::place(RawVector<Vec3>& points) {
     std::vector<std::int32_t> moved;
     const auto put = [&](std::size_t p, const Vec3& to) {
         points[p] = to;
@@ -111,12 +113,12 @@ std::vector<std::int32_t> Nodes::place(std::vector<Vec3>& points) {
 }
 
 void Nodes::store(Front& front) const {
-    for (std::size_t i = 0; i < behind_.size(); ++i) front.movedTo[i] = behind_[i].at(beta[static_cast<std::size_t>(front.movedPoints[i])]);
-    for (std::size_t v = 0; v < wall_.size(); ++v) {
+    parallelFor(behind_.size(), [&](std::size_t i) { front.movedTo[i] = behind_[i].at(beta[static_cast<std::size_t>(front.movedPoints[i])]); }, 2048);
+    parallelFor(wall_.size(), [&](std::size_t v) {
         const Vec3 b = wall_[v].at(beta[core_ + v]);
         front.front[v] = frontNow(v);
         front.mesh.set_point(FrontMesh::VertexHandle(static_cast<int>(v)), {b.x, b.y, b.z});
-    }
+    }, 2048);
 }
 
 // One repair: the mesh, how far its nodes have gone, and what is wrong with it now.

@@ -152,7 +152,7 @@ class StepBack {
 
     const StepBackInput& in_;
     Optimiser& optimiser_;
-    std::vector<Vec3> start_; // per core point
+    RawVector<Vec3> start_; // per core point
     std::int64_t poorBefore_ = 0;
 };
 

@@ -257,10 +257,10 @@ RawVector<std::int32_t> FoamScanner::labels() {
     return result;
 }
 
-std::vector<Vec3> FoamScanner::points() {
+RawVector<Vec3> FoamScanner::points() {
     const auto size = static_cast<std::size_t>(header_.scalarBytes);
     const std::size_t n = count(header_.binary ? 3 * size : 7);
-    std::vector<Vec3> result;
+    RawVector<Vec3> result;
     if (header_.binary) {
         const std::string_view bytes = raw(n, 3 * size);
         static_assert(sizeof(Vec3) == 3 * sizeof(double));

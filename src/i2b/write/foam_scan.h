@@ -29,7 +29,7 @@ class FoamScanner {
     RawVector<std::int32_t> labels();               // N(...) or N{value}
     void appendLabels(RawVector<std::int32_t>& to); // the same, at the end of a list
     RawVector<std::uint32_t> offsets();             // labels, none below 0
-    std::vector<Vec3> points();
+    RawVector<Vec3> points();
 
     [[noreturn]] void fail(const std::string& what) const;
 
