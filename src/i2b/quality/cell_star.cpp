@@ -13,21 +13,17 @@ constexpr double leastPyramid = 0.05; // cosine between a face's normal and the 
 constexpr double leastTets = 0.08;    // share of a face's tetrahedra
 constexpr double flat = 1e-9;        // a pyramid below this cosine is wrong, as in mesh_faults.cpp
 constexpr double wrong = 30;         // of a cell inside out
+constexpr Index none = ~Index(0);
 
 void add(Badness& out, double share) {
     out.worst = std::max(out.worst, share);
     if (share > counts) out.sum += (share - counts) * (share - counts);
 }
 
-Index placeIn(const std::vector<std::int32_t>& sorted, std::int32_t value) {
-    const auto i = std::lower_bound(sorted.begin(), sorted.end(), value);
-    return i != sorted.end() && *i == value ? static_cast<Index>(i - sorted.begin()) : sorted.size();
-}
-
 } // namespace
 
 bool CellStar::uses(std::int32_t face) const {
-    constexpr Index few = 8; // one by one is faster
+    constexpr Index few = 16; // one by one is faster
     const auto v = mesh_.face(face);
     return std::any_of(v.begin(), v.end(), [&](std::int32_t p) {
         return points_.size() <= few ? std::find(points_.begin(), points_.end(), p) != points_.end() : std::binary_search(points_.begin(), points_.end(), p);
@@ -56,32 +52,28 @@ const std::vector<std::int32_t>& CellStar::cellsAt(const std::vector<std::int32_
 void CellStar::take(const std::vector<std::int32_t>& points, const std::vector<std::int32_t>& cells) {
     points_ = points;
     if (&cells != &cells_) cells_ = cells;
-    faces_.clear();
-    for (std::int32_t c : cells_) {
-        for (std::int32_t f : cellFaces_[c]) faces_.push_back({f, -1, -1, false});
-    }
-    std::sort(faces_.begin(), faces_.end(), [](const Face& a, const Face& b) { return a.face < b.face; });
-    faces_.erase(std::unique(faces_.begin(), faces_.end(), [](const Face& a, const Face& b) { return a.face == b.face; }), faces_.end());
-    const auto inside = [&](std::int32_t cell) {
-        const Index i = placeIn(cells_, cell);
-        return i < cells_.size() ? static_cast<std::int32_t>(i) : -1;
-    };
-    for (Face& f : faces_) {
-        f.moves = uses(f.face);
-        f.owner = inside(mesh_.owner[Index(f.face)]);
-        if (f.face < mesh_.internalFaces()) f.neighbour = inside(mesh_.neighbour[Index(f.face)]);
-    }
-    faceOf_.clear(), firstFace_.assign(1, 0);
-    for (std::int32_t c : cells_) {
-        for (std::int32_t f : cellFaces_[c]) {
-            const auto at = std::lower_bound(faces_.begin(), faces_.end(), f, [](const Face& a, std::int32_t b) { return a.face < b; });
-            faceOf_.push_back(static_cast<std::uint32_t>(at - faces_.begin()));
+    sides_.clear(), firstFace_.assign(1, 0), cellOf_.clear();
+    for (std::uint32_t i = 0; i < cells_.size(); ++i) {
+        for (const std::int32_t f : cellFaces_[cells_[i]]) {
+            sides_.push_back(std::uint64_t(std::uint32_t(f)) << 32 | cellOf_.size());
+            cellOf_.push_back(i);
         }
-        firstFace_.push_back(static_cast<std::uint32_t>(faceOf_.size()));
+        firstFace_.push_back(static_cast<std::uint32_t>(cellOf_.size()));
+    }
+    std::sort(sides_.begin(), sides_.end()); // of one face together
+    faces_.clear(), faceOf_.resize(sides_.size());
+    for (const std::uint64_t side : sides_) {
+        const auto f = static_cast<std::int32_t>(side >> 32);
+        const auto at = static_cast<std::uint32_t>(side);
+        if (faces_.empty() || faces_.back().face != f) faces_.push_back({f, -1, -1, uses(f)});
+        Face& face = faces_.back();
+        const auto cell = static_cast<std::int32_t>(cellOf_[at]);
+        (mesh_.owner[Index(f)] == cells_[Index(cell)] ? face.owner : face.neighbour) = cell;
+        faceOf_[at] = static_cast<std::uint32_t>(faces_.size() - 1);
     }
     shapes_.resize(faces_.size()), own_.resize(cells_.size());
     shapeTurn_.assign(faces_.size(), 0), ownTurn_.assign(cells_.size(), 0);
-    turn_ = 0, tetOrder_.clear();
+    turn_ = 0, tetOrder_.clear(), critical_ = none;
 }
 
 const FaceShape& CellStar::shapeOf(Index i) {
@@ -182,10 +174,39 @@ Vec3 CellStar::middleOf(std::int32_t point) const {
 }
 
 Badness CellStar::judge() {
+    return judge([](const Badness&) { return false; });
+}
+
+Badness CellStar::judge(const Badness& before, double most) {
+    return judge([&](const Badness& now) { return now.worst > before.worst || (now.invalid && !before.invalid) || !(now.sum < most); });
+}
+
+bool CellStar::mayStand(const Badness& before) {
+    const auto mayNot = [&](const Badness& now) { return now.invalid || (now.worst > nearLimit && (now.worst > before.worst || now.sum > before.sum)); };
+    return !mayNot(judge(mayNot));
+}
+
+// All, cells first, or until it is too bad. What made it so in the last look is asked before: it often does so again.
+template <class TooBad>
+Badness CellStar::judge(const TooBad& tooBad) {
     ++turn_;
+    const auto look = [&](Index i, Badness& out) { i < cells_.size() ? judgeCell(i, out) : judgeFace(i - cells_.size(), out); };
+    if (critical_ != none) {
+        Badness first;
+        look(critical_, first);
+        if (tooBad(first)) return first;
+    }
     Badness out;
-    for (Index i = 0; i < cells_.size(); ++i) judgeCell(i, out);
-    for (Index i = 0; i < faces_.size(); ++i) judgeFace(i, out);
+    Index worst = 0;
+    double largest = -1;
+    for (Index i = 0; i < cells_.size() + faces_.size(); ++i) {
+        const double before = out.sum;
+        look(i, out);
+        if (out.sum - before > largest) largest = out.sum - before, worst = i;
+        if (!tooBad(out)) continue;
+        critical_ = worst;
+        break;
+    }
     return out;
 }
 

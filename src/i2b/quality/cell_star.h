@@ -8,6 +8,8 @@
 
 namespace i2b {
 
+inline constexpr double nearLimit = 0.98; // of a limit: so near to it a move may bring cells that is not for their sake
+
 // How bad faces and cells are: sums over those that are near or over the limits, each measure taken as a share of its
 // limit (1: at the limit).
 struct Badness {
@@ -40,6 +42,10 @@ class CellStar {
     void countFlat(double least) { leastFull_ = least; }
     // With these points of the mesh as they are now; no others may have moved since.
     Badness judge();
+    // The same where it is no worse than before and of a sum under `most`; else some of it, which tells that it is not.
+    Badness judge(const Badness& before, double most);
+    // Does a move for another thing's sake keep to the limits, or make nothing worse where they are broken already?
+    bool mayStand(const Badness& before);
     // The same of tetrahedra, which are in no other figure. Looks no further where the sum comes to `most`.
     TetLack judgeTets(double most = std::numeric_limits<double>::infinity());
     // m, of the edges that end at the point, one of those gathered.
@@ -57,6 +63,8 @@ class CellStar {
     void forEdgesAt(std::int32_t point, const F& f) const;
     void judgeCell(std::size_t i, Badness& out);
     void judgeFace(std::size_t i, Badness& out);
+    template <class TooBad>
+    Badness judge(const TooBad& tooBad);
     double tetShareOf(std::size_t i);
     // Worked out once a turn, where they are asked for.
     const FaceShape& shapeOf(std::size_t i);
@@ -73,11 +81,14 @@ class CellStar {
     double orthoLimit_; // of 1 less the cosine
     std::vector<std::int32_t> points_, cells_;
     std::vector<Face> faces_;                          // ascending
+    std::vector<std::uint64_t> sides_;                 // of all cells: face, then place in cellOf_; ascending
+    std::vector<std::uint32_t> cellOf_;                // of each side, place in cells_
     std::vector<std::uint32_t> faceOf_, firstFace_;    // the faces of each cell, places in faces_
     std::vector<FaceShape> shapes_, row_;
     std::vector<CellMoments> own_;
     std::uint32_t turn_ = 0;                           // counts the looks
     std::vector<std::uint32_t> shapeTurn_, ownTurn_;   // of what shapes_ and own_ hold; 0: nothing
+    std::size_t critical_ = ~std::size_t(0);                        // what made the last place too bad: a cell, or a face after all cells
     std::vector<std::uint32_t> tetOrder_;              // places in faces_: what lacked most in the first look comes first; or empty
 };
 

@@ -48,22 +48,26 @@ class MeshBuilder {
 
 } // namespace
 
-LocalEdits::LocalEdits(const PolyMesh& mesh, const Rows& cellFaces) : mesh_(mesh), cellFaces_(cellFaces), group_(Index(mesh.cells)) {
-    std::iota(group_.begin(), group_.end(), 0);
+LocalEdits::LocalEdits(const PolyMesh& mesh, const Rows& cellFaces) : mesh_(mesh), cellFaces_(cellFaces) {}
+
+LocalEdits::Cells LocalEdits::cells(std::int32_t group) const {
+    const auto at = members_.find(group);
+    return at == members_.end() ? Cells(group) : Cells(at->second);
 }
 
-std::span<const std::int32_t> LocalEdits::cells(std::int32_t group) const {
-    const auto at = members_.find(group);
-    if (at == members_.end()) return {&group_[Index(group)], 1};
-    return at->second;
+MeshEdits LocalEdits::edits() const {
+    MeshEdits edits{std::vector<std::int32_t>(Index(mesh_.cells)), {divided_.begin(), divided_.end()}};
+    std::iota(edits.groups.begin(), edits.groups.end(), 0);
+    for (const auto& [cell, group] : groupOf_) edits.groups[Index(cell)] = group;
+    return edits;
 }
 
 void LocalEdits::unite(std::int32_t a, std::int32_t b) {
     if (b < a) std::swap(a, b);
-    const auto from = cells(b), to = cells(a);
+    const Cells from = cells(b), to = cells(a);
     std::vector<std::int32_t> all(to.begin(), to.end());
     all.insert(all.end(), from.begin(), from.end());
-    for (const std::int32_t c : all) group_[Index(c)] = a;
+    for (const std::int32_t c : all) groupOf_[c] = a;
     members_.erase(b);
     members_[a] = std::move(all);
     ++united_;

@@ -17,12 +17,27 @@ class LocalEdits {
   public:
     LocalEdits(const PolyMesh& mesh, const Rows& cellFaces);
 
-    std::int32_t of(std::int32_t cell) const { return group_[static_cast<std::size_t>(cell)]; }
-    std::span<const std::int32_t> cells(std::int32_t group) const;
+    std::int32_t of(std::int32_t cell) const {
+        const auto at = groupOf_.find(cell);
+        return at == groupOf_.end() ? cell : at->second;
+    }
+    class Cells { // of a group: most are of one
+      public:
+        explicit Cells(std::int32_t own) : own_(own) {}
+        explicit Cells(std::span<const std::int32_t> all) : all_(all) {}
+        const std::int32_t* begin() const { return all_.empty() ? &own_ : all_.data(); }
+        const std::int32_t* end() const { return begin() + size(); }
+        std::size_t size() const { return all_.empty() ? 1 : all_.size(); }
+
+      private:
+        std::int32_t own_ = -1;
+        std::span<const std::int32_t> all_;
+    };
+    Cells cells(std::int32_t group) const;
     void unite(std::int32_t a, std::int32_t b); // groups
     void divide(std::int32_t face, std::uint32_t from) { divided_[face] = from; } // as trianglesOf() does
     bool isDivided(std::int32_t face) const { return divided_.contains(face); }
-    MeshEdits edits() const { return {group_, {divided_.begin(), divided_.end()}}; }
+    MeshEdits edits() const;
     std::int64_t united() const { return united_; }
     std::int64_t divided() const { return static_cast<std::int64_t>(divided_.size()); }
 
@@ -54,7 +69,7 @@ class LocalEdits {
 
     const PolyMesh& mesh_;
     const Rows& cellFaces_;
-    std::vector<std::int32_t> group_;                                        // per cell
+    std::unordered_map<std::int32_t, std::int32_t> groupOf_;                 // of cells in groups of more than one
     std::unordered_map<std::int32_t, std::vector<std::int32_t>> members_;    // of groups of more than one
     std::map<std::int32_t, std::uint32_t> divided_;
     std::int64_t united_ = 0;

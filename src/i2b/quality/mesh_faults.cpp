@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 
 namespace i2b {
@@ -30,27 +29,12 @@ bool isBad(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::span<
     return false;
 }
 
-// f(place) for those that are not 0, ascending. Nearly all are 0 and this is asked again and again: eight are looked at as one.
-template <class F>
-void forFlagged(const std::vector<std::uint8_t>& flags, const F& f) {
-    Index i = 0;
-    for (; i + 8 <= flags.size(); i += 8) {
-        std::uint64_t eight = 0;
-        std::memcpy(&eight, &flags[i], 8);
-        if (eight == 0) continue;
-        for (Index k = i; k < i + 8; ++k)
-            if (flags[k] != 0) f(k);
-    }
-    for (; i < flags.size(); ++i)
-        if (flags[i] != 0) f(i);
-}
-
 } // namespace
 
 MeshFaults::MeshFaults(const PolyMesh& mesh, const Rows& cellFaces, const QualityLimits& limits, std::int32_t thinFrom)
     : mesh_(mesh), cellFaces_(cellFaces), limits_(limits), thinFrom_(thinFrom),
       severeCosine_(std::cos(limits.nonOrthogonality * std::numbers::pi / 180)), tets_(limits.tetQuality), moments_(Index(mesh.cells)),
-      cellFlags_(Index(mesh.cells), 0), faceFlags_(Index(mesh.faces()), 0), moved_(mesh.points.size(), 0),
+      cellFlags_(Index(mesh.cells)), faceFlags_(Index(mesh.faces())), moved_(mesh.points.size(), 0),
       changed_(Index(mesh.cells), 0) {
     measureCells();
     measureFaces();
@@ -104,7 +88,7 @@ void MeshFaults::measureFaces() {
 void MeshFaults::lookAtThin() {
     if (thinFrom_ >= mesh_.cells) return;
     std::array<Index, 2> found{};
-    forFlagged(faceFlags_, [&](Index f) {
+    faceFlags_.forEach([&](Index f) {
         if (mesh_.owner[f] < thinFrom_) return; // the other side is the higher number
         found[0] += (faceFlags_[f] & (lowWeight | lowRatio)) != 0;
         found[1] += (faceFlags_[f] & undivided) != 0;
@@ -120,8 +104,7 @@ void MeshFaults::measureCellAt(std::int32_t cell, CellFaceShapes& faceShapes) {
     CellMoments& moments = moments_[Index(cell)];
     moments = measureCell(mesh_, faces, shapes, cell);
     const bool low = cell < thinFrom_ && cellDeterminant(mesh_, faces, shapes, Directions()) < limits_.determinant;
-    cellFlags_[Index(cell)] =
-        static_cast<std::uint8_t>((isBad(mesh_, faces, shapes, cell, moments) ? bad : 0) | (low ? lowDeterminant : 0));
+    cellFlags_.set(Index(cell), static_cast<std::uint8_t>((isBad(mesh_, faces, shapes, cell, moments) ? bad : 0) | (low ? lowDeterminant : 0)));
 }
 
 void MeshFaults::measureFaceAt(std::int32_t face) {
@@ -144,7 +127,7 @@ void MeshFaults::measureFaceAt(std::int32_t face) {
         return limits_.tetQuality > 0 && share < doubtful && tetErrors(mesh_, mesh_.face(face), shape.centre, own.centre, neighbour, tets_) > 0;
     };
     if (share < undividedShare || pyramidShare(shape, own.centre, neighbour, limits_.pyramidVolume) < 0 || isPoor()) flags |= undivided;
-    faceFlags_[Index(face)] = static_cast<std::uint8_t>(flags);
+    faceFlags_.set(Index(face), static_cast<std::uint8_t>(flags));
 }
 
 bool MeshFaults::hasMoved(std::int32_t face) const {
@@ -201,7 +184,7 @@ void MeshFaults::update(std::vector<std::int32_t> cells) {
 
 std::vector<std::int32_t> MeshFaults::badCells() const {
     std::vector<std::int32_t> cells;
-    forFlagged(cellFlags_, [&](Index c) {
+    cellFlags_.forEach([&](Index c) {
         if (cellFlags_[c] & bad) cells.push_back(static_cast<std::int32_t>(c));
     });
     return cells;
@@ -215,7 +198,7 @@ std::vector<std::int32_t> MeshFaults::poorCells(FaultCount& faults, bool severeO
     std::array<Index, 4> found{};
     Index determinants = 0;
     std::vector<std::int32_t> cells;
-    forFlagged(faceFlags_, [&](Index f) {
+    faceFlags_.forEach([&](Index f) {
         const int flags = flagsOf(f) & ~undivided;
         bool named = false;
         for (Index k = 0; k < ofFaces.size(); ++k)
@@ -224,7 +207,7 @@ std::vector<std::int32_t> MeshFaults::poorCells(FaultCount& faults, bool severeO
         cells.push_back(mesh_.owner[f]);
         if (f < mesh_.neighbour.size()) cells.push_back(mesh_.neighbour[f]);
     });
-    forFlagged(cellFlags_, [&](Index c) {
+    cellFlags_.forEach([&](Index c) {
         if ((cellFlags_[c] & lowDeterminant) && determinants++ < limit && !severeOnly) cells.push_back(static_cast<std::int32_t>(c));
     });
     faults.severe = static_cast<std::int64_t>(found[0] + found[1]);
@@ -237,7 +220,7 @@ std::vector<std::int32_t> MeshFaults::poorCells(FaultCount& faults, bool severeO
 
 std::vector<std::int32_t> MeshFaults::undividedFaces() const {
     std::vector<std::int32_t> faces;
-    forFlagged(faceFlags_, [&](Index f) {
+    faceFlags_.forEach([&](Index f) {
         if (flagsOf(f) & undivided) faces.push_back(static_cast<std::int32_t>(f));
     });
     return faces;
@@ -245,10 +228,10 @@ std::vector<std::int32_t> MeshFaults::undividedFaces() const {
 
 std::vector<std::int32_t> MeshFaults::poorFaces() const {
     std::vector<std::int32_t> faces;
-    forFlagged(faceFlags_, [&](Index f) {
+    faceFlags_.forEach([&](Index f) {
         if (flagsOf(f) != 0) faces.push_back(static_cast<std::int32_t>(f));
     });
-    forFlagged(cellFlags_, [&](Index c) {
+    cellFlags_.forEach([&](Index c) {
         const auto row = cellFaces_[static_cast<std::int32_t>(c)];
         faces.insert(faces.end(), row.begin(), row.end());
     });

@@ -1,6 +1,7 @@
 // What repair looks for in a mesh: cells that are wrong, and what is over the limits of quality. Measured once for the
 // whole mesh and afterwards only where points have moved, with the same outcome.
 #pragma once
+#include "i2b/quality/flags.h"
 #include "i2b/quality/mesh_geometry.h"
 #include "i2b/quality/quality_report.h"
 #include "i2b/quality/tet_quality.h"
@@ -62,7 +63,7 @@ class MeshFaults {
     double severeCosine_;
     TetTolerance tets_;
     RawVector<CellMoments> moments_;
-    std::vector<std::uint8_t> cellFlags_, faceFlags_;
+    Flags cellFlags_, faceFlags_;
     int thinFlags_ = 0xff; // of faces among thin cells: what counts
     std::vector<std::uint8_t> moved_, changed_; // per point, per cell; clear between updates
 };

@@ -1,8 +1,10 @@
 #include "i2b/quality/optimise.h"
+#include "i2b/core/numbering.h"
 #include "i2b/core/parallel.h"
 #include "i2b/quality/optimise_worker.h"
 #include <algorithm>
 #include <bit>
+#include <numeric>
 
 namespace i2b {
 namespace {
@@ -66,23 +68,33 @@ std::int64_t Optimiser::bend() {
 
 namespace {
 
-// Some of the cells of a mesh, each with its place among them in ascending order: a bit a cell.
+// Some of the cells of a mesh, each with its place among them in ascending order: a bit a cell, or by their numbers where they are few.
 class CellRanks {
   public:
-    explicit CellRanks(std::int32_t cells) : words_(Index(cells) / 64 + 1, 0) {}
-    void add(std::int32_t cell) { words_[Index(cell) / 64] |= std::uint64_t(1) << (cell % 64); }
+    CellRanks(std::int32_t cells, std::size_t adds) : areFew_(adds < Index(cells) / 256), words_(areFew_ ? 0 : Index(cells) / 64 + 1, 0) {}
+    void add(std::int32_t cell) {
+        if (areFew_) few_.add(cell);
+        else words_[Index(cell) / 64] |= std::uint64_t(1) << (cell % 64);
+    }
     std::size_t count() { // from here on rank() may be asked
+        if (areFew_) {
+            few_.close();
+            return few_.items().size();
+        }
         before_.resize(words_.size());
         std::uint32_t sum = 0;
         for (Index w = 0; w < words_.size(); ++w) before_[w] = sum, sum += static_cast<std::uint32_t>(std::popcount(words_[w]));
         return sum;
     }
     std::size_t rank(std::int32_t cell) const {
+        if (areFew_) return Index(few_.placeOf(cell));
         const std::uint64_t lower = (std::uint64_t(1) << (cell % 64)) - 1;
         return before_[Index(cell) / 64] + static_cast<Index>(std::popcount(words_[Index(cell) / 64] & lower));
     }
 
   private:
+    bool areFew_;
+    Numbering few_;
     std::vector<std::uint64_t> words_;
     std::vector<std::uint32_t> before_; // set bits before each word
 };
@@ -106,7 +118,8 @@ void Optimiser::findCells(Task& task, Worker& worker) const {
 // Groups of tasks that may go at once: no cell that one changes is read by another. Those beyond 64 colours wait for
 // the next sweep.
 std::vector<std::vector<std::uint32_t>> Optimiser::colour(const std::vector<Task>& tasks) const {
-    CellRanks ranks(mesh_.cells);
+    const Index reads = std::accumulate(tasks.begin(), tasks.end(), Index(0), [](Index n, const Task& t) { return n + t.reads.size(); });
+    CellRanks ranks(mesh_.cells, reads);
     for (const Task& task : tasks)
         for (const std::int32_t c : task.reads) ranks.add(c);
     struct Masks { std::uint64_t read = 0, changed = 0; };
@@ -170,7 +183,7 @@ std::int64_t Optimiser::sweep(std::vector<Task>& tasks, const Move& move, Restin
 }
 
 std::int64_t Optimiser::mend(int sweeps, bool mayLeave) {
-    leavers_.assign(mayLeave ? front_.front.size() : 0, 1);
+    allMayLeave(mayLeave);
     std::int64_t moves = 0, before = 0, patientFrom = 0;
     RestingNodes resting;
     for (int i = 0; i < sweeps; ++i) {
@@ -193,7 +206,7 @@ std::int64_t Optimiser::mend(int sweeps, bool mayLeave) {
 }
 
 void Optimiser::mendAt(const std::vector<std::int32_t>& cells, int sweeps) {
-    leavers_.clear();
+    allMayLeave(false);
     RestingNodes resting;
     Index before = 0;
     for (int i = 0; i < sweeps; ++i) {
@@ -209,7 +222,7 @@ void Optimiser::mendAt(const std::vector<std::int32_t>& cells, int sweeps) {
 }
 
 void Optimiser::mendFlatAt(const std::vector<std::int32_t>& cells, int sweeps) {
-    leavers_.clear();
+    allMayLeave(false);
     leastFull_ = faults_.limits().determinant;
     const std::vector<std::int32_t> undivided = faults_.undividedFaces();
     for (int i = 0; i < sweeps; ++i) {
@@ -238,7 +251,7 @@ std::vector<Optimiser::Task> Optimiser::tasksOfCellsAt(const std::vector<std::in
 }
 
 void Optimiser::mendTets(int sweeps) {
-    leavers_.clear();
+    allMayLeave(false);
     std::vector<std::int32_t> faces = faults_.undividedFaces();
     RestingNodes resting;
     for (const bool wide : {false, true}) {
@@ -289,28 +302,30 @@ std::vector<Optimiser::NodeMove> Optimiser::trackedPlaces() const {
 
 void Optimiser::comeBack(int sweeps, const std::vector<std::int32_t>& butAt) {
     if (!tracked_) return;
-    std::vector<Vec3> places(front_.front.size());
+    Places places;
     std::vector<Task> tasks;
     const std::vector<Task> stay = tasksOfCellsAt(butAt);
     for (const auto& [node, from] : *tracked_) {
         if (node.kind != MeshNode::wall || std::ranges::binary_search(stay, node, {}, &Task::node)) continue;
-        places[Index(node.id)] = from.to;
+        places[node.id] = from.to;
         tasks.push_back({node, from.cell, {}, {}});
     }
     bringBack(std::move(tasks), places, sweeps);
 }
 
-void Optimiser::bringBack(std::vector<Task> tasks, const std::vector<Vec3>& places, int sweeps) {
+void Optimiser::bringBack(std::vector<Task> tasks, const Places& places, int sweeps) {
     for (int i = 0; i < sweeps && !tasks.empty(); ++i)
-        sweep(tasks, [&](const Task& t, Worker& w) { return bringBack(t, places[Index(t.node.id)], w); });
+        sweep(tasks, [&](const Task& t, Worker& w) { return bringBack(t, places.at(t.node.id), w); });
 }
 
 void Optimiser::mendTetsOffWall(std::vector<std::int32_t> faces, int sweeps) {
-    std::vector<Vec3> places(front_.front.size());
-    for (Index v = 0; v < places.size(); ++v) places[v] = front_.wall(v);
-    leavers_.assign(front_.front.size(), 0);
+    std::vector<Task> walls = tasksOfCellsAt(faces); // no others move
+    std::erase_if(walls, [](const Task& t) { return t.node.kind != MeshNode::wall; });
+    Places places;
+    for (const Task& t : walls) places[t.node.id] = nodes_.place(t.node);
+    allMayLeave(false), isLast_ = true;
     for (const Task& t : tasksOfFaces(faces))
-        if (t.node.kind == MeshNode::wall) leavers_[Index(t.node.id)] = 1;
+        if (t.node.kind == MeshNode::wall) leavers_.insert(t.node.id);
     RestingNodes resting;
     for (int i = 0; i < sweeps && !faces.empty(); ++i) {
         std::vector<Task> tasks = tasksOfCellsAt(faces);
@@ -319,10 +334,9 @@ void Optimiser::mendTetsOffWall(std::vector<std::int32_t> faces, int sweeps) {
         std::ranges::set_intersection(faces, faults_.undividedFaces(), std::back_inserter(left));
         faces = std::move(left);
     }
-    leavers_.clear();
-    std::vector<std::uint8_t> moved(places.size());
-    for (Index v = 0; v < places.size(); ++v) moved[v] = !(places[v] == front_.wall(v));
-    bringBack(wallTasks(moved), places, backSweeps);
+    allMayLeave(false), isLast_ = false;
+    std::erase_if(walls, [&](const Task& t) { return places.at(t.node.id) == nodes_.place(t.node); });
+    bringBack(std::move(walls), places, backSweeps);
 }
 
 std::vector<Optimiser::Task> Optimiser::tasksOff() const {

@@ -9,6 +9,8 @@
 #include "i2b/quality/resting_nodes.h"
 #include <map>
 #include <optional>
+#include <unordered_map>
+#include <unordered_set>
 
 namespace i2b {
 
@@ -84,7 +86,8 @@ class Optimiser {
     bool isFree(const MeshNode& node, const Vec3& to) const;
     bool keepsFolds(const MeshNode& node, const Vec3& to) const;
     bool isHeld(const MeshNode& wall) const;
-    bool mayLeave(const MeshNode& wall) const { return !leavers_.empty() && leavers_[static_cast<std::size_t>(wall.id)] != 0; }
+    bool mayLeave(const MeshNode& wall) const { return allLeave_ || leavers_.contains(wall.id); }
+    void allMayLeave(bool may) { allLeave_ = may, leavers_.clear(); }
     enum class Hold : std::uint8_t { nothing, surface, feature };
     Hold holdAt(const MeshNode& node, const Vec3& from) const;
     Vec3 onWall(Hold hold, const MeshNode& node, const Vec3& from, const Vec3& to) const;
@@ -94,7 +97,8 @@ class Optimiser {
     bool mendNodeTets(const Task& task, Worker& worker);
     double sizeAt(std::int32_t vertex) const;
     Vec3 wayToOpen(std::int32_t vertex) const;
-    void bringBack(std::vector<Task> tasks, const std::vector<Vec3>& places, int sweeps);
+    using Places = std::unordered_map<std::int32_t, Vec3>; // of wall vertices, m
+    void bringBack(std::vector<Task> tasks, const Places& places, int sweeps);
     bool bringBack(const Task& task, const Vec3& to, Worker& worker);
     float* bendOf(const MeshNode& wall) const;
     NodeMove whereIs(const MeshNode& node, std::int32_t cell) const;
@@ -110,7 +114,9 @@ class Optimiser {
     MeshFaults& faults_;
     Front& front_;
     LayerStack& stack_;
-    std::vector<std::uint8_t> leavers_; // per wall vertex: need not stay on the geometry; empty: all stay
+    std::unordered_set<std::int32_t> leavers_; // wall vertices that need not stay on the geometry;
+    bool allLeave_ = false;                    // nor need any other
+    bool isLast_ = false;                      // are few faces left, which are worth any effort?
     bool thin_;           // are the layers thin?
     int layers_;          // cells of the highest stack of thin layers, which share their faults; 1 where there are none
     WallGuide guide_;

@@ -65,7 +65,7 @@ bool Optimiser::mendNode(const Task& task, Worker& worker) {
     Badness least = before;
     const auto tryStep = [&](const Vec3& step) {
         const Vec3 to = onWall(hold, task.node, from, from + step);
-        const Badness b = worker.at(to);
+        const Badness b = worker.at(to, before, least.sum);
         if (b.worst > before.worst || (b.invalid && !before.invalid) || !(b.sum < least.sum) || !isFree(task.node, to)) return;
         least = b, best = to;
     };
@@ -111,13 +111,13 @@ bool Optimiser::bendNode(const Task& task, Worker& worker) {
 
 // Whether a wall node may stand at a place, with its column as it is or bent another way, which it then is.
 bool Optimiser::fitsAt(const Task& task, Worker& worker, const Vec3& to, const Badness& before) {
-    if (mayStand(worker.at(to), before)) return true;
+    if (worker.mayStandAt(to, before)) return true;
     float* bend = bendOf(task.node);
     if (!bend) return false;
     const float was = *bend;
     for (const float value : bends) {
         *bend = value;
-        if (value != was && mayStand(worker.at(to), before)) return true;
+        if (value != was && worker.mayStandAt(to, before)) return true;
     }
     *bend = was;
     return false;

@@ -97,7 +97,7 @@ bool Optimiser::bringBack(const Task& task, const Vec3& to, Worker& worker) {
     for (const double share : {1.0, 0.5, 0.25}) {
         const Vec3 place = from + (to - from) * share;
         const TetLack there = worker.tetsAt(place);
-        if ((there.undivided && !(now.undivided && there.sum < now.sum)) || !mayStand(worker.at(place), limits) || !isFree(task.node, place)) continue;
+        if ((there.undivided && !(now.undivided && there.sum < now.sum)) || !worker.mayStandAt(place, limits) || !isFree(task.node, place)) continue;
         worker.end(place);
         return true;
     }
@@ -115,7 +115,7 @@ bool Optimiser::bendForTets(const Task& task, Worker& worker, const Vec3& at, do
     for (const float value : bends) {
         *bend = value;
         const double tets = worker.tetsAt(at, least).sum;
-        if (tets < least * (1 - leastGain) && mayStand(worker.at(at), limits)) least = tets, best = value;
+        if (tets < least * (1 - leastGain) && worker.mayStandAt(at, limits)) least = tets, best = value;
     }
     *bend = best;
     return best != was;
@@ -124,7 +124,6 @@ bool Optimiser::bendForTets(const Task& task, Worker& worker, const Vec3& at, do
 bool Optimiser::mendNodeTets(const Task& task, Worker& worker) {
     const std::uint8_t outside = nodes_.outside(task.node);
     const bool leaves = task.node.kind == MeshNode::wall && mayLeave(task.node);
-    const bool isLast = !leavers_.empty();
     if (task.node.kind == MeshNode::wall && outside != 0 && !leaves) return false;
     worker.begin(task);
     const Vec3 from = worker.from;
@@ -132,10 +131,9 @@ bool Optimiser::mendNodeTets(const Task& task, Worker& worker) {
     if (!before.undivided) return false;
     std::optional<Badness> limits; // where it is; asked for where they are broken
     const auto keepsLimits = [&](const Vec3& to) {
-        const Badness there = worker.at(to);
-        if (there.invalid || there.worst <= nearLimit) return !there.invalid;
+        if (worker.mayStandAt(to, {})) return true;
         if (!limits) limits = worker.at(from);
-        return mayStand(there, *limits);
+        return worker.mayStandAt(to, *limits);
     };
     const Hold hold = holdAt(task.node, from);
     const Vec3 toMiddle = withinSides(worker.middle() - from, outside);
@@ -175,7 +173,7 @@ bool Optimiser::mendNodeTets(const Task& task, Worker& worker) {
         const Vec3 down = worker.descent(before.sum, probe * h, outside, [&](const Vec3& to) { return worker.tetsAt(to).sum; });
         for (const double length : stepLengths) tryStep(down * (length * h));
         // Few faces come as far: their nodes try all ways round before they are given up.
-        if (isLast && !(least < before.sum * (1 - leastGain))) {
+        if (isLast_ && !(least < before.sum * (1 - leastGain))) {
             for (int i = 0; i < 27; ++i) {
                 const Vec3 way = withinSides({double(i % 3 - 1), double(i / 3 % 3 - 1), double(i / 9 - 1)}, outside);
                 if (way == Vec3{}) continue;

@@ -10,15 +10,9 @@ namespace i2b {
 // What all moves keep to.
 inline constexpr double probe = 1e-3;     // of h: step of the differences that give the direction of descent
 inline constexpr double leastGain = 1e-3; // of the sum: what a move must bring
-inline constexpr double nearLimit = 0.98; // of a limit: a node on its way to the wall may bring its cells up to there
 inline constexpr std::array<double, 3> towardsMiddle{0.6, 0.3, 0.1};                      // of the way
 inline constexpr std::array<double, 5> stepLengths{0.25, 0.12, 0.06, 0.03, 0.015};        // of h
 inline constexpr std::array<float, 5> bends{1, 0.75f, 0.5f, 0.25f, 0}; // of columns
-
-// A move for another thing's sake keeps to the limits, or makes nothing worse where they are broken already.
-inline bool mayStand(const Badness& now, const Badness& before) {
-    return !now.invalid && (now.worst <= nearLimit || (now.worst <= before.worst && now.sum <= before.sum));
-}
 
 struct Optimiser::Worker {
     Worker(Optimiser& o) : optimiser(o), star(o.mesh_, o.cellFaces_, o.faults_.moments(), o.faults_.limits(), o.faults_.thinFrom(),
@@ -48,6 +42,14 @@ struct Optimiser::Worker {
     Badness at(const Vec3& to) {
         put(to);
         return star.judge();
+    }
+    Badness at(const Vec3& to, const Badness& before, double most) {
+        put(to);
+        return star.judge(before, most);
+    }
+    bool mayStandAt(const Vec3& to, const Badness& before) {
+        put(to);
+        return star.mayStand(before);
     }
     TetLack tetsAt(const Vec3& to, double most = std::numeric_limits<double>::infinity()) {
         put(to);
