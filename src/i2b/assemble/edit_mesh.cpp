@@ -1,5 +1,6 @@
 #include "i2b/assemble/edit_mesh.h"
 #include "i2b/core/collect.h"
+#include "i2b/core/sums.h"
 #include <algorithm>
 
 namespace i2b {
@@ -7,28 +8,9 @@ namespace {
 
 using Index = std::size_t;
 
-// Sums of count(i) before each i, and of all at the end.
-template <class Count>
-RawVector<std::uint32_t> sumsBefore(Index n, const Count& count) {
-    constexpr Index chunk = 16384;
-    RawVector<std::uint32_t> sums(n + 1);
-    std::vector<std::uint32_t> first((n + chunk - 1) / chunk);
-    parallelChunks(n, chunk, [&](Index begin, Index end, Index c) {
-        std::uint32_t sum = 0;
-        for (Index i = begin; i < end; ++i) sum += count(i);
-        first[c] = sum;
-    });
-    sums[n] = exclusiveScan(first);
-    parallelChunks(n, chunk, [&](Index begin, Index end, Index c) {
-        std::uint32_t sum = first[c];
-        for (Index i = begin; i < end; ++i) sums[i] = sum, sum += count(i);
-    });
-    return sums;
-}
-
 // Numbers of the cells that are left.
 std::vector<std::int32_t> numberCells(const std::vector<std::int32_t>& groups, std::int32_t& count) {
-    const RawVector<std::uint32_t> before = sumsBefore(groups.size(), [&](Index c) { return Index(groups[c]) == c ? 1u : 0u; });
+    const RawVector<std::uint32_t> before = sumsBefore<std::uint32_t>(groups.size(), [&](Index c) { return Index(groups[c]) == c; });
     std::vector<std::int32_t> number(groups.size());
     parallelFor(groups.size(), [&](Index c) { number[c] = static_cast<std::int32_t>(before[Index(groups[c])]); }, 8192);
     count = static_cast<std::int32_t>(before[groups.size()]);
@@ -57,11 +39,8 @@ class FaceOrder {
         order_.resize(internal_ + Index(mesh.faces()) - internal);
         std::vector<Index> at; // of the plain ones, where those that changed go in: after those that are alike
         for (const std::uint32_t f : changed) at.push_back(static_cast<Index>(std::upper_bound(plain.begin(), plain.end(), f, before) - plain.begin()));
-        parallelFor(changed.size() + 1, [&](Index k) { // the plain ones up to the k-th, and that one
-            const Index from = k == 0 ? 0 : at[k - 1], to = k == changed.size() ? plain.size() : at[k];
-            parallelFor(to - from, [&](Index i) { order_[from + i + k] = plain[from + i]; }, 16384);
-            if (k < changed.size()) order_[to + k] = changed[k];
-        }, 64);
+        for (Index k = 0; k < changed.size(); ++k) order_[at[k] + k] = changed[k];
+        parallelFor(plain.size(), [&](Index i) { order_[i + Index(std::upper_bound(at.begin(), at.end(), i) - at.begin())] = plain[i]; }, 8192);
         parallelFor(order_.size() - internal_, [&](Index i) { order_[internal_ + i] = static_cast<std::uint32_t>(internal + i); }, 16384);
     }
     Index size() const { return order_.size(); }
@@ -105,7 +84,7 @@ class Divisions {
 
 // Where what comes of each face in the new order begins; one more at the end.
 RawVector<std::uint32_t> scan(const FaceOrder& order, const auto& count) {
-    return sumsBefore(order.size(), [&](Index i) { return count(order.face(i)); });
+    return sumsBefore<std::uint32_t>(order.size(), [&](Index i) { return count(order.face(i)); });
 }
 
 void rewriteVertices(PolyMesh& mesh, const FaceOrder& order, const Divisions& divisions, const RawVector<std::uint32_t>& firstPiece) {

@@ -1,4 +1,5 @@
 #include "i2b/carve/room.h"
+#include "i2b/core/collect.h"
 #include "i2b/grid/mask_ops.h"
 #include <algorithm>
 #include <cmath>
@@ -126,23 +127,17 @@ std::vector<Place> besideKept(const Room& room) {
     std::vector<Place> places;
     for (std::size_t l = 0; l < room.candidates().size(); ++l) {
         const std::vector<const MaskLeaf*> leaves = leavesOf(std::as_const(*room.candidates()[l]));
-        constexpr std::size_t chunk = 64;
-        std::vector<std::vector<Place>> parts((leaves.size() + chunk - 1) / chunk);
-        parallelChunks(leaves.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const Index3 o = toIndex(leaves[i]->origin());
-                bits::forEach(leafBits(leaves[i]), [&](int x, int y, int z) {
-                    const Place cell{static_cast<std::int32_t>(l), {o[0] + x, o[1] + y, o[2] + z}};
-                    if (room.isKept(cell)) return;
-                    for (int d = 0; d < 6; ++d) {
-                        if (!room.isKept(faceNeighbour(cell, d))) continue;
-                        parts[c].push_back(cell);
-                        return;
-                    }
-                });
-            }
-        });
-        for (const std::vector<Place>& part : parts) places.insert(places.end(), part.begin(), part.end());
+        const RawVector<Place> found = collect<Place>(leaves.size(), [&](std::size_t i, const auto& put) {
+            const Index3 o = toIndex(leaves[i]->origin());
+            bits::forEach(leafBits(leaves[i]), [&](int x, int y, int z) {
+                const Place cell{static_cast<std::int32_t>(l), {o[0] + x, o[1] + y, o[2] + z}};
+                if (room.isKept(cell)) return;
+                for (int d = 0; d < 6; ++d) {
+                    if (room.isKept(faceNeighbour(cell, d))) return put(cell);
+                }
+            });
+        }, 64);
+        places.insert(places.end(), found.begin(), found.end());
     }
     std::sort(places.begin(), places.end());
     return places;

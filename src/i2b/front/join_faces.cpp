@@ -1,6 +1,6 @@
 #include "i2b/front/join_faces.h"
 #include "i2b/core/error.h"
-#include "i2b/core/parallel.h"
+#include "i2b/core/sums.h"
 #include <algorithm>
 #include <atomic>
 #include <fmt/format.h>
@@ -71,7 +71,6 @@ class Joiner {
 
     // False: not manifold, or open more than once at a vertex.
     bool pair() {
-        if (polygons_.size() > 0 && vertices_ == 0) return false;
         return allOf(polygons_.size(), [&](Index f) { return polygons_.start[f + 1] - polygons_.start[f] >= 3; }) && //
                allOf(sides_.size(), [&](Index s) {
                    opposite_[s] = sides_.between(sides_.end(s), sides_.vertex(s));
@@ -81,20 +80,10 @@ class Joiner {
     }
     // Edges are numbered as their first sides come, and lead along these.
     void number() {
-        constexpr Index chunk = 8192;
         const auto isFirst = [&](Index s) { return opposite_[s] == none || Index(opposite_[s]) > s; };
-        std::vector<std::int32_t> next((sides_.size() + chunk - 1) / chunk, 0);
-        parallelChunks(sides_.size(), chunk, [&](Index begin, Index end, Index c) {
-            for (Index s = begin; s < end; ++s) next[c] += isFirst(s);
-        });
-        edges_ = static_cast<Index>(exclusiveScan(next));
-        parallelChunks(sides_.size(), chunk, [&](Index begin, Index end, Index c) {
-            for (Index s = begin; s < end; ++s)
-                if (isFirst(s)) halfedge_[s] = 2 * next[c]++;
-        });
-        parallelFor(sides_.size(), [&](Index s) {
-            if (!isFirst(s)) halfedge_[s] = halfedge_[Index(opposite_[s])] + 1;
-        }, 4096);
+        const RawVector<std::int32_t> before = sumsBefore<std::int32_t>(sides_.size(), isFirst);
+        edges_ = Index(before.back());
+        parallelFor(sides_.size(), [&](Index s) { halfedge_[s] = isFirst(s) ? 2 * before[s] : 2 * before[Index(opposite_[s])] + 1; }, 4096);
     }
     void fill(FrontMesh& mesh) const {
         mesh.resize(vertices_, edges_, polygons_.size());

@@ -1,5 +1,5 @@
 #include "i2b/front/replace_faces.h"
-#include "i2b/core/parallel.h"
+#include "i2b/core/sums.h"
 #include "i2b/front/join_faces.h"
 
 namespace i2b {
@@ -10,14 +10,15 @@ using Index = std::size_t;
 // Which new faces each face gives, and which sides.
 class Replacement {
   public:
-    Replacement(const Front& front, const std::vector<FaceCut>& cuts) : front_(front), cutOf_(front.ownerCell.size(), nullptr), face_(cutOf_.size() + 1, 0), side_(cutOf_.size() + 1, 0) {
+    Replacement(const Front& front, const std::vector<FaceCut>& cuts) : front_(front), cutOf_(front.ownerCell.size(), nullptr) {
         for (const FaceCut& cut : cuts) cutOf_[Index(cut.face)] = &cut;
-        parallelFor(cutOf_.size(), [&](Index f) {
-            face_[f] = cutOf_[f] ? cutOf_[f]->polygons.size() : 1;
-            if (cutOf_[f]) for (const auto& polygon : cutOf_[f]->polygons) side_[f] += polygon.size();
-            else side_[f] = front.mesh.valence(handle(f));
-        }, 2048);
-        exclusiveScan(face_), exclusiveScan(side_);
+        face_ = sumsBefore<Index>(cutOf_.size(), [&](Index f) { return cutOf_[f] ? cutOf_[f]->polygons.size() : 1; });
+        side_ = sumsBefore<Index>(cutOf_.size(), [&](Index f) {
+            if (!cutOf_[f]) return Index(front.mesh.valence(handle(f)));
+            Index n = 0;
+            for (const auto& polygon : cutOf_[f]->polygons) n += polygon.size();
+            return n;
+        });
     }
     Index faces() const { return face_.back(); }
 
@@ -61,7 +62,7 @@ class Replacement {
     std::ptrdiff_t at(Index f) const { return static_cast<std::ptrdiff_t>(face_[f]); }
     const Front& front_;
     std::vector<const FaceCut*> cutOf_; // per face, null: stays
-    std::vector<Index> face_, side_;    // per face, and one more: its first new face, its first side
+    RawVector<Index> face_, side_;      // per face, and one more: its first new face, its first side
 };
 
 } // namespace

@@ -1,4 +1,4 @@
-#include "i2b/core/parallel.h"
+#include "i2b/core/collect.h"
 #include "i2b/layers/layer_stack.h"
 #include <array>
 
@@ -21,19 +21,15 @@ void forNeighbours(const FrontMesh& mesh, std::size_t face, const F& f) {
 // Faces that hold a neighbour down are visited by rising count, so that each is lowered to its final count at once: the
 // work is in the faces beside a border alone.
 void taperCounts(const FrontMesh& mesh, std::vector<std::uint8_t>& counts) {
-    using Found = std::vector<std::uint32_t>;
-    std::vector<Found> found((counts.size() + chunk - 1) / chunk);
-    parallelChunks(counts.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
-        for (std::size_t f = begin; f < end; ++f) {
-            bool holds = false;
-            forNeighbours(mesh, f, [&](std::size_t other) { holds = holds || counts[other] > counts[f] + 1; });
-            if (holds) found[c].push_back(static_cast<std::uint32_t>(f));
-        }
-    });
-    std::array<Found, 256> byCount;
-    for (const Found& some : found) {
-        for (std::uint32_t f : some) byCount[counts[f]].push_back(f);
-    }
+    std::array<std::vector<std::uint32_t>, 256> byCount;
+    const auto holds = [&](std::size_t f) {
+        bool any = false;
+        forNeighbours(mesh, f, [&](std::size_t other) { any = any || counts[other] > counts[f] + 1; });
+        return any;
+    };
+    for (const std::uint32_t f : collect<std::uint32_t>(counts.size(), [&](std::size_t i, const auto& put) {
+             if (holds(i)) put(static_cast<std::uint32_t>(i));
+         }, chunk)) byCount[counts[f]].push_back(f);
     for (std::size_t count = 0; count + 1 < byCount.size(); ++count) {
         for (std::size_t i = 0; i < byCount[count].size(); ++i) {
             const std::uint32_t f = byCount[count][i];

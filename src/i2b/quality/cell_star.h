@@ -88,7 +88,7 @@ class CellStar {
     std::vector<CellMoments> own_;
     std::uint32_t turn_ = 0;                           // counts the looks
     std::vector<std::uint32_t> shapeTurn_, ownTurn_;   // of what shapes_ and own_ hold; 0: nothing
-    std::size_t critical_ = ~std::size_t(0);                        // what made the last place too bad: a cell, or a face after all cells
+    std::size_t critical_ = ~std::size_t(0);           // what made the last place too bad: a cell, or a face after all cells
     std::vector<std::uint32_t> tetOrder_;              // places in faces_: what lacked most in the first look comes first; or empty
 };
 
