@@ -1,44 +1,12 @@
 #include "i2b/assemble/mesh_topology.h"
-#include "i2b/core/parallel.h"
+#include "i2b/core/rows.h"
 #include <algorithm>
 #include <atomic>
-#include <tbb/task_arena.h>
 
 namespace i2b {
 namespace {
 
 using Index = std::size_t;
-
-// Each task takes a stretch of the rows and reads all sources in order: rows come out in order without
-// sorting and without atomics, and reading twice costs less than either. More than a few tasks would only
-// read more. forEach(s, add) calls add(row) for each row that source s goes into; the passes follow each
-// other within a row.
-template <class... Passes>
-Rows buildRows(std::size_t rows, const Passes&... passes) {
-    Rows result;
-    result.offsets.assign(rows + 1, 0);
-    const auto tasks = static_cast<std::size_t>(std::clamp(tbb::this_task_arena::max_concurrency(), 1, 8));
-    const auto forStretches = [&](const auto& body) {
-        tbb::parallel_for(std::size_t(0), tasks, [&](std::size_t t) {
-            const auto begin = static_cast<std::uint32_t>(rows * t / tasks);
-            const auto size = static_cast<std::uint32_t>(rows * (t + 1) / tasks) - begin;
-            const auto inside = [&](std::int32_t row) {
-                return static_cast<std::uint32_t>(row) - begin < size;
-            };
-            (passes([&](std::int32_t row, std::size_t source) {
-                 if (inside(row)) body(Index(row), source);
-             }),
-             ...);
-        });
-    };
-    forStretches([&](Index row, std::size_t) { ++result.offsets[row]; });
-    result.items.resize(exclusiveScan(result.offsets));
-    std::vector<std::uint32_t> next(result.offsets.begin(), result.offsets.end() - 1);
-    forStretches([&](Index row, std::size_t source) {
-        result.items[next[row]++] = static_cast<std::int32_t>(source);
-    });
-    return result;
-}
 
 // Root of the tree that cell c hangs in. Halves the path on the way; a stale parent is still an ancestor.
 std::int32_t findRoot(std::vector<std::int32_t>& parent, std::int32_t c) {
@@ -71,20 +39,27 @@ void unite(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b) {
 } // namespace
 
 Rows buildCellFaces(const PolyMesh& mesh) {
-    const auto each = [](std::span<const std::int32_t> cells) {
-        return [cells](const auto& add) {
-            for (Index f = 0; f < cells.size(); ++f) add(cells[f], f);
-        };
+    Rows rows;
+    const Index internal = mesh.neighbour.size();
+    const auto cellsOf = [&](Index f, const auto& put) {
+        put(Index(mesh.owner[f]));
+        if (f < internal) put(Index(mesh.neighbour[f]));
     };
-    return buildRows(static_cast<std::size_t>(mesh.cells), each(mesh.owner), each(mesh.neighbour));
+    const auto ownedFirst = [&](Index cell, std::int32_t a, std::int32_t b) {
+        const bool owns = Index(mesh.owner[Index(a)]) == cell, other = Index(mesh.owner[Index(b)]) == cell;
+        return owns != other ? owns : a < b;
+    };
+    turnIntoRows(Index(mesh.cells), 0, mesh.owner.size(), cellsOf, ownedFirst, rows.offsets, rows.items);
+    return rows;
 }
 
 Rows buildPointFaces(const PolyMesh& mesh) {
-    return buildRows(mesh.points.size(), [&](const auto& add) {
-        for (Index f = 0; f < mesh.owner.size(); ++f)
-            for (Index i = mesh.faceOffsets[f]; i < mesh.faceOffsets[f + 1]; ++i)
-                add(mesh.faceVertices[i], f);
-    });
+    Rows rows;
+    const auto pointsOf = [&](Index f, const auto& put) {
+        for (const std::int32_t p : mesh.face(static_cast<std::int32_t>(f))) put(Index(p));
+    };
+    turnIntoRows(mesh.points.size(), 0, mesh.owner.size(), pointsOf, rows.offsets, rows.items);
+    return rows;
 }
 
 std::vector<std::int32_t> regionRoots(const PolyMesh& mesh) {

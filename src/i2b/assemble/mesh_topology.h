@@ -11,7 +11,7 @@ namespace i2b {
 
 // Row i is items[offsets[i] .. offsets[i+1]).
 struct Rows {
-    std::vector<std::uint32_t> offsets; // rows + 1
+    RawVector<std::uint32_t> offsets; // rows + 1
     RawVector<std::int32_t> items;
 
     std::span<const std::int32_t> operator[](std::int32_t row) const {

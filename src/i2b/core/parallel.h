@@ -3,8 +3,10 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_scan.h>
 #include <vector>
 
 #if defined(__SANITIZE_THREAD__)
@@ -75,15 +77,25 @@ T orderedReduce(std::size_t n, T init, const Body& body, const Join& join, std::
     return result;
 }
 
-// Turns counts into starting offsets in place and returns their sum.
-template <class T>
-T exclusiveScan(std::vector<T>& counts) {
-    T sum = 0;
-    for (T& c : counts) {
-        const T n = c;
-        c = sum;
-        sum += n;
-    }
+// Turns counts, whole numbers, into starting offsets in place and returns their sum.
+template <class T, class Allocator>
+T exclusiveScan(std::vector<T, Allocator>& counts) {
+    using Range = tbb::blocked_range<std::size_t>;
+    constexpr std::size_t grain = 8192;
+    const LoopFence fence;
+    const auto scan = [&](const Range& r, T sum, bool isFinal) {
+        fence.enter();
+        for (std::size_t i = r.begin(); i != r.end(); ++i) {
+            const T n = counts[i];
+            if (isFinal) counts[i] = sum;
+            sum += n;
+        }
+        fence.leave();
+        return sum;
+    };
+    if (counts.size() <= grain) return scan(Range(0, counts.size()), T(0), true);
+    const T sum = tbb::parallel_scan(Range(0, counts.size(), grain), T(0), scan, std::plus<T>());
+    fence.join();
     return sum;
 }
 

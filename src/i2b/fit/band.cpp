@@ -1,5 +1,5 @@
 #include "i2b/fit/band.h"
-#include "i2b/core/parallel.h"
+#include "i2b/core/rows.h"
 #include "i2b/fit/band_marks.h"
 #include "i2b/fit/band_pieces.h"
 #include <algorithm>
@@ -22,23 +22,7 @@ BandEdge wallEdge(const Band& band, std::int32_t a, std::int32_t b) {
 template <class Row>
 Csr<std::int32_t> rowsOf(std::size_t rows, std::size_t first, std::size_t last, const Row& row) {
     Csr<std::int32_t> csr;
-    csr.start.assign(rows + 1, 0);
-    const auto raise = [](std::int64_t& n) { return std::atomic_ref<std::int64_t>(n).fetch_add(1, std::memory_order_relaxed); };
-    parallelFor(last - first, [&](std::size_t i) { row(first + i, [&](std::size_t r) { raise(csr.start[r]); }); });
-    csr.values.resize(static_cast<std::size_t>(exclusiveScan(csr.start)));
-    std::vector<std::int64_t> next(csr.start.begin(), csr.start.end() - 1);
-    parallelFor(last - first, [&](std::size_t i) {
-        row(first + i, [&](std::size_t r) { csr.values[static_cast<std::size_t>(raise(next[r]))] = static_cast<std::int32_t>(first + i); });
-    });
-    parallelFor(rows, [&](std::size_t r) { // nearly in order already
-        std::int32_t* const v = csr.values.data() + csr.start[r];
-        for (std::int64_t i = 1; i < csr.start[r + 1] - csr.start[r]; ++i) {
-            const std::int32_t n = v[i];
-            std::int64_t at = i;
-            for (; at > 0 && v[at - 1] > n; --at) v[at] = v[at - 1];
-            v[at] = n;
-        }
-    });
+    turnIntoRows(rows, first, last, row, csr.start, csr.values);
     return csr;
 }
 
@@ -125,7 +109,7 @@ void addPrisms(Band& band, const Front& front) {
     // Each wall node has its front node last: higher in number than all wall nodes.
     const auto old = static_cast<std::size_t>(band.edges.start[band.walls]), all = wall.values.size() + band.walls;
     RawVector<BandEdge> values(all + band.edges.values.size() - old);
-    std::vector<std::int64_t> start(band.nodes() + 1);
+    RawVector<std::int64_t> start(band.nodes() + 1);
     parallelFor(band.walls, [&](std::size_t v) {
         start[v] = wall.start[v] + static_cast<std::int64_t>(v);
         BandEdge* const end = std::copy(wall[v].begin(), wall[v].end(), values.data() + start[v]);

@@ -32,7 +32,7 @@ struct BandEdge {
 
 template <class T>
 struct Csr { // rows of values
-    std::vector<std::int64_t> start;      // rows + 1
+    RawVector<std::int64_t> start;        // rows + 1
     RawVector<T> values;
     std::span<const T> operator[](std::size_t row) const {
         return {values.data() + start[row], values.data() + start[row + 1]};

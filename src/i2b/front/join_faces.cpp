@@ -1,5 +1,6 @@
 #include "i2b/front/join_faces.h"
 #include "i2b/core/error.h"
+#include "i2b/core/rows.h"
 #include "i2b/core/sums.h"
 #include <algorithm>
 #include <atomic>
@@ -32,14 +33,9 @@ void addOneByOne(FrontMesh& mesh, const Polygons& polygons, const char* what) {
 // The sides of all polygons, each the halfedge from its vertex to the next.
 class Sides {
   public:
-    Sides(Index vertices, const Polygons& polygons) : polygons_(polygons), face_(polygons.vertices.size()), start_(vertices + 1, 0), from_(polygons.vertices.size()) {
+    Sides(Index vertices, const Polygons& polygons) : polygons_(polygons), face_(polygons.vertices.size()) {
         parallelFor(polygons.size(), [&](Index f) { std::fill(face_.begin() + at(f), face_.begin() + at(f + 1), static_cast<std::int32_t>(f)); }, 2048);
-        const auto raise = [](std::uint32_t& n) { return std::atomic_ref<std::uint32_t>(n).fetch_add(1, std::memory_order_relaxed); };
-        parallelFor(size(), [&](Index s) { raise(start_[Index(vertex(s))]); }, 4096);
-        exclusiveScan(start_);
-        std::vector<std::uint32_t> next = start_;
-        parallelFor(size(), [&](Index s) { from_[raise(next[Index(vertex(s))])] = static_cast<std::int32_t>(s); }, 4096);
-        parallelFor(vertices, [&](Index v) { std::sort(from_.begin() + start_[v], from_.begin() + start_[v + 1]); }, 2048);
+        turnIntoRows(vertices, 0, size(), [&](Index s, const auto& put) { put(Index(vertex(s))); }, start_, from_);
     }
     Index size() const { return face_.size(); }
     std::int32_t vertex(Index s) const { return polygons_.vertices[s]; }
@@ -61,7 +57,7 @@ class Sides {
     std::ptrdiff_t at(Index f) const { return static_cast<std::ptrdiff_t>(polygons_.start[f]); }
     const Polygons& polygons_;
     RawVector<std::int32_t> face_;
-    std::vector<std::uint32_t> start_;
+    RawVector<std::uint32_t> start_;
     RawVector<std::int32_t> from_;
 };
 

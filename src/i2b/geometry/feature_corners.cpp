@@ -1,8 +1,9 @@
 #include "i2b/geometry/feature_corners.h"
 #include "i2b/core/collect.h"
-#include "i2b/core/sort_unique.h"
+#include "i2b/core/rows.h"
 #include "i2b/geometry/feature_edges.h"
 #include <algorithm>
+#include <tbb/parallel_sort.h>
 
 namespace i2b {
 namespace {
@@ -17,30 +18,46 @@ struct Meeting {
     bool continued = false;
 };
 
+bool isFree(const FeatureEdge& e) { return (e.kinds & bitOf(EdgeKind::free)) != 0; }
+
 // The points where lines meet, and what meets there.
 class Meetings {
   public:
-    Meetings(std::span<const Vec3> points, const RawVector<FeatureEdge>& lines) {
-        places_.reserve(2 * lines.size());
-        for (const FeatureEdge& e : lines) places_.push_back(e.a), places_.push_back(e.b);
-        sortUnique(places_);
+    Meetings(std::span<const Vec3> points, const RawVector<FeatureEdge>& lines) : points_(points), places_(2 * lines.size()) {
+        parallelFor(lines.size(), [&](std::size_t i) { places_[2 * i] = lines[i].a, places_[2 * i + 1] = lines[i].b; }, 4096);
+        tbb::parallel_sort(places_);
+        places_.erase(std::unique(places_.begin(), places_.end()), places_.end());
+        RawVector<std::uint32_t> start;
+        RawVector<std::int32_t> ends; // two for each line
+        const auto pointOf = [&](std::size_t end) { return end % 2 == 0 ? lines[end / 2].a : lines[end / 2].b; };
+        turnIntoRows(places_.size(), 0, 2 * lines.size(), [&](std::size_t end, const auto& put) { put(find(pointOf(end))); }, start, ends);
         meetings_.resize(places_.size());
-        for (const FeatureEdge& e : lines) {
-            forEnds(points, e, [&](Meeting& m, const Vec3& away) {
-                (m.lines++ == 0 ? m.first : m.second) = away;
+        parallelFor(places_.size(), [&](std::size_t p) {
+            Meeting& m = meetings_[p];
+            for (std::uint32_t i = start[p]; i < start[p + 1]; ++i) {
+                const auto end = static_cast<std::size_t>(ends[i]);
+                const FeatureEdge& e = lines[end / 2];
+                (m.lines++ == 0 ? m.first : m.second) = away(e, end % 2 == 0);
                 m.rim = m.rim || (e.kinds & bitOf(EdgeKind::rim));
                 m.named = m.named || (e.kinds & bitOf(EdgeKind::named));
-            });
-        }
+            }
+        }, 512);
     }
-    // f(meeting, direction away from it) for the ends of an edge where lines meet.
-    template <class F>
-    void forEnds(std::span<const Vec3> points, const FeatureEdge& e, const F& f) {
-        const Vec3 d = normalized(points[e.b] - points[e.a]);
-        for (const auto& [point, away] : {std::pair{e.a, d}, std::pair{e.b, -d}}) {
-            const auto found = std::lower_bound(places_.begin(), places_.end(), point);
-            if (found != places_.end() && *found == point) f(meetings_[static_cast<std::size_t>(found - places_.begin())], away);
-        }
+    // The ends of milder folds and free edges, of which a single line may go on in some. A tessellated radius folds by a little more
+    // here, a little less there than the limit: its line is cut in pieces then, whose ends would make most of the corners of a
+    // curved body.
+    void continueIn(const RawVector<FeatureEdge>& milder, double limit) {
+        parallelFor(milder.size(), [&](std::size_t i) {
+            const FeatureEdge& e = milder[i];
+            for (const bool fromA : {true, false}) {
+                const std::uint32_t point = fromA ? e.a : e.b;
+                const std::size_t at = find(point);
+                if (at == places_.size() || places_[at] != point) continue;
+                Meeting& m = meetings_[at];
+                if (m.lines == 1 && !m.named && m.rim == isFree(e) && fold(m.first, away(e, fromA)) <= limit)
+                    std::atomic_ref(m.continued).store(true, std::memory_order_relaxed);
+            }
+        }, 1024);
     }
     std::vector<std::uint32_t> corners(double limit) const {
         std::vector<std::uint32_t> corners;
@@ -52,27 +69,27 @@ class Meetings {
     }
 
   private:
-    std::vector<std::uint32_t> places_; // ascending
+    std::size_t find(std::uint32_t point) const { return static_cast<std::size_t>(std::lower_bound(places_.begin(), places_.end(), point) - places_.begin()); }
+    Vec3 away(const FeatureEdge& e, bool fromA) const {
+        const Vec3 d = normalized(points_[e.b] - points_[e.a]);
+        return fromA ? d : -d;
+    }
+
+    std::span<const Vec3> points_;
+    RawVector<std::uint32_t> places_; // ascending
     std::vector<Meeting> meetings_;
 };
 
 } // namespace
 
 std::vector<std::uint32_t> findCorners(std::span<const Vec3> points, std::span<const FeatureEdge> all, double limit) {
-    const auto isFree = [](const FeatureEdge& e) { return (e.kinds & bitOf(EdgeKind::free)) != 0; };
     const auto pick = [&](const auto& isOne) {
         return collect<FeatureEdge>(all.size(), [&](std::size_t i, const auto& put) {
             if (isOne(all[i])) put(all[i]);
         });
     };
     Meetings meetings(points, pick([](const FeatureEdge& e) { return (e.kinds & lineKinds) != 0; }));
-    // A tessellated radius folds by a little more here, a little less there than the limit. Its line is cut in
-    // pieces then, whose ends would make most of the corners of a curved body.
-    for (const FeatureEdge& e : pick([&](const FeatureEdge& e) { return !(e.kinds & lineKinds) && (e.angle >= limit / 2 || isFree(e)); })) {
-        meetings.forEnds(points, e, [&](Meeting& m, const Vec3& away) {
-            if (m.lines == 1 && !m.named && m.rim == isFree(e) && fold(m.first, away) <= limit) m.continued = true;
-        });
-    }
+    meetings.continueIn(pick([&](const FeatureEdge& e) { return !(e.kinds & lineKinds) && (e.angle >= limit / 2 || isFree(e)); }), limit);
     return meetings.corners(limit);
 }
 
