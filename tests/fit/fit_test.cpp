@@ -4,6 +4,8 @@
 #include "carve/kept_checks.h"
 #include "i2b/carve/carve.h"
 #include "i2b/fit/fit.h"
+#include <array>
+#include <atomic>
 #include <gtest/gtest.h>
 
 namespace i2b::test {
@@ -99,6 +101,43 @@ TEST_P(Fit, BlocksOfOneColourShareNoCorner) {
             }
         }
         EXPECT_EQ(clashes, 0u) << "seed " << seed;
+    });
+}
+
+// A block's turn comes when those of all its neighbours are done that go before it: of lower colours at the same kind, of higher ones at the
+// kind before.
+TEST_P(Fit, BlocksWaitForTheirNeighbours) {
+    forSettings(GetParam(), [](const Setting& s, unsigned seed) {
+        const NodeBlocks& blocks = s.band.blocks;
+        constexpr std::array kinds{NodeBlocks::wall, NodeBlocks::front, NodeBlocks::core};
+        struct Turn { std::uint32_t begin = 0, end = 0; };
+        std::vector<std::array<Turn, 3>> turns(blocks.size());
+        std::atomic<std::uint32_t> clock = 0;
+        blocks.sweep(kinds, [&](std::size_t b, NodeBlocks::Kind kind) {
+            Turn& turn = turns[b][kind];
+            EXPECT_EQ(turn.begin, 0u) << "seed " << seed;
+            turn.begin = ++clock;
+            turn.end = ++clock;
+        });
+        EXPECT_EQ(clock, 6 * blocks.size()) << "seed " << seed;
+        std::vector<std::size_t> blockOf(s.band.movable), colourOf(blocks.size());
+        for (std::size_t b = 0; b < blocks.size(); ++b)
+            for (const NodeBlocks::Kind kind : kinds)
+                for (const std::int32_t n : blocks.nodes(b, kind)) blockOf[static_cast<std::size_t>(n)] = b;
+        for (std::size_t c = 0; c < blocks.colours().size(); ++c)
+            for (const std::uint32_t b : blocks.colours()[c]) colourOf[b] = c;
+        std::size_t tooEarly = 0;
+        for (const Corner& corner : s.band.corners) {
+            for (const std::int32_t m : corner.node) {
+                for (const std::int32_t n : corner.node) {
+                    const auto i = static_cast<std::size_t>(m), j = static_cast<std::size_t>(n);
+                    if (i >= s.band.movable || j >= s.band.movable || colourOf[blockOf[i]] >= colourOf[blockOf[j]]) continue;
+                    const std::array<Turn, 3>&first = turns[blockOf[i]], &second = turns[blockOf[j]];
+                    for (std::size_t k = 0; k < 3; ++k) tooEarly += second[k].begin < first[k].end || (k > 0 && first[k].begin < second[k - 1].end);
+                }
+            }
+        }
+        EXPECT_EQ(tooEarly, 0u) << "seed " << seed;
     });
 }
 

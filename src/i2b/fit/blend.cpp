@@ -3,6 +3,7 @@
 #include "i2b/fit/fit.h"
 #include <algorithm>
 #include <atomic>
+#include <functional>
 
 namespace i2b {
 namespace {
@@ -18,8 +19,17 @@ struct Progress {
     std::vector<std::uint8_t> untold;  // lowered, and its neighbours have not been bounded by it
     std::vector<std::uint8_t> unplaced; // lowered since the nodes were placed
     std::vector<std::uint8_t> moved;   // when they were placed last
+    std::vector<std::uint8_t> marked;  // of bad corners, or beside lowered ones; those who ask take it off
 
-    explicit Progress(std::size_t movable) : alpha(movable, 1), untold(movable, 0), unplaced(movable, 1), moved(movable, 0) {}
+    explicit Progress(std::size_t movable) : alpha(movable, 1), untold(movable, 0), unplaced(movable, 1), moved(movable, 0), marked(movable, 0) {}
+    void mark(std::int32_t n) {
+        if (static_cast<std::size_t>(n) < marked.size()) std::atomic_ref<std::uint8_t>(marked[static_cast<std::size_t>(n)]).store(1, std::memory_order_relaxed);
+    }
+    bool takeMark(std::size_t n) {
+        if (!marked[n]) return false;
+        marked[n] = 0;
+        return true;
+    }
     void lower(std::size_t n, double to) {
         if (!(to < alpha[n])) return;
         alpha[n] = to;
@@ -31,20 +41,22 @@ void mark(std::uint8_t& flag) { std::atomic_ref<std::uint8_t>(flag).store(1, std
 
 // Marks the nodes of bad corners. Only corners with a node that has moved since the last round are judged again: where
 // many have, all corners in turn, else those of the nodes that have, each at the first such node.
-std::vector<std::uint8_t> nodesOfBadCorners(const Band& band, const std::vector<Vec3>& x, double limit, const Progress& progress) {
-    std::vector<std::uint8_t> bad(band.nodes(), 0);
+void markBadCorners(const Band& band, const std::vector<Vec3>& x, double limit, Progress& progress) {
     const auto isMoved = [&](std::int32_t m) { return static_cast<std::size_t>(m) < band.movable && progress.moved[static_cast<std::size_t>(m)]; };
     const auto judge = [&](const Corner& corner) {
         if (!(cornerEnergy(corner, x) > limit)) return;
-        for (std::int32_t m : corner.node) mark(bad[static_cast<std::size_t>(m)]);
+        for (std::int32_t m : corner.node) progress.mark(m);
     };
-    const std::ptrdiff_t moved = std::count(progress.moved.begin(), progress.moved.end(), std::uint8_t(1));
-    if (static_cast<std::size_t>(moved) > band.movable / 8) {
+    const std::size_t moved = orderedReduce(band.movable, std::size_t(0), [&](std::size_t begin, std::size_t end) {
+        const auto from = progress.moved.begin();
+        return static_cast<std::size_t>(std::count(from + static_cast<std::ptrdiff_t>(begin), from + static_cast<std::ptrdiff_t>(end), std::uint8_t(1)));
+    }, std::plus<>(), 1 << 16);
+    if (moved > band.movable / 8) {
         parallelFor(band.corners.size(), [&](std::size_t c) {
             const Corner& corner = band.corners[c];
             if (std::any_of(corner.node.begin(), corner.node.end(), isMoved)) judge(corner);
         }, 1024);
-        return bad;
+        return;
     }
     parallelFor(band.movable, [&](std::size_t n) {
         if (!progress.moved[n]) return;
@@ -54,15 +66,14 @@ std::vector<std::uint8_t> nodesOfBadCorners(const Band& band, const std::vector<
             if (static_cast<std::size_t>(first) == n) judge(corner);
         }
     });
-    return bad;
 }
 
 // Nodes of bad corners step back by `step`. Gives whether any changed.
 bool stepBackBad(const Band& band, const std::vector<Vec3>& x, double limit, double step, Progress& progress) {
-    const std::vector<std::uint8_t> bad = nodesOfBadCorners(band, x, limit, progress);
+    markBadCorners(band, x, limit, progress);
     std::uint8_t changed = 0;
     parallelFor(band.movable, [&](std::size_t n) {
-        if (!bad[n] || progress.alpha[n] <= 0) return;
+        if (!progress.takeMark(n) || progress.alpha[n] <= 0) return;
         progress.lower(n, std::max(0.0, progress.alpha[n] - step));
         mark(changed);
     }, 4096);
@@ -72,16 +83,15 @@ bool stepBackBad(const Band& band, const std::vector<Vec3>& x, double limit, dou
 // Lowers alpha until neighbours differ by no more than the slope, and the nodes of one fan agree. Only where a neighbour
 // was lowered there is anything to do.
 void spread(const Band& band, Progress& progress) {
-    std::vector<double> bound(band.movable);
+    RawVector<double> bound(band.movable);
     for (int round = 0; round < 4; ++round) {
-        std::vector<std::uint8_t> look(band.nodes(), 0);
         parallelFor(band.movable, [&](std::size_t n) {
             if (!progress.untold[n]) return;
-            for (const BandEdge& e : band.edges[n]) mark(look[static_cast<std::size_t>(e.b)]);
+            for (const BandEdge& e : band.edges[n]) progress.mark(e.b);
             progress.untold[n] = 0;
         }, 1024);
         parallelFor(band.movable, [&](std::size_t n) {
-            if (!look[n]) return;
+            if (!progress.marked[n]) return;
             double a = progress.alpha[n];
             for (const BandEdge& e : band.edges[n]) {
                 const auto b = static_cast<std::size_t>(e.b);
@@ -90,7 +100,7 @@ void spread(const Band& band, Progress& progress) {
             bound[n] = a;
         }, 1024);
         parallelFor(band.movable, [&](std::size_t n) {
-            if (look[n]) progress.lower(n, bound[n]);
+            if (progress.takeMark(n)) progress.lower(n, bound[n]);
         }, 4096);
         parallelFor(band.fronts, [&](std::size_t i) {
             for (std::int32_t b : band.fansOf[i]) progress.lower(band.walls + i, progress.alpha[static_cast<std::size_t>(b)]);

@@ -2,8 +2,10 @@
 #include "i2b/core/parallel.h"
 #include "i2b/fit/band.h"
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
+#include <tbb/parallel_for_each.h>
 #include <tbb/parallel_sort.h>
 
 namespace i2b {
@@ -120,6 +122,40 @@ void NodeBlocks::colour(const Band& band) {
         colourOf[b] = static_cast<std::uint32_t>(free);
         colours_[free].push_back(static_cast<std::uint32_t>(b));
     }
+    beside_.resize(size());
+    parallelFor(size(), [&](std::size_t b) {
+        for (const std::uint32_t other : beside[b]) (colourOf[other] < colourOf[b] ? beside_[b].earlier : beside_[b].later).push_back(other);
+    });
+}
+
+// A turn is a block at one of the kinds. It comes after the turns of its earlier neighbours at that kind, and of its later ones and
+// itself at the kind before: each of these counts it down when done, and the last one starts it.
+void NodeBlocks::sweep(std::span<const Kind> kinds, const Work& work) const {
+    struct Turn { std::uint32_t block, step; };
+    const std::size_t blocks = size();
+    std::vector<std::atomic<std::uint32_t>> waits(kinds.size() * blocks);
+    std::vector<Turn> first;
+    for (std::size_t step = 0; step < kinds.size(); ++step) {
+        for (std::size_t b = 0; b < blocks; ++b)
+            waits[step * blocks + b].store(static_cast<std::uint32_t>(beside_[b].earlier.size() + (step > 0 ? 1 + beside_[b].later.size() : 0)), std::memory_order_relaxed);
+    }
+    for (const std::vector<std::uint32_t>& colour : colours_) // the first colour and any other without neighbours before
+        for (const std::uint32_t b : colour)
+            if (beside_[b].earlier.empty()) first.push_back({b, 0});
+    if (kinds.empty()) return;
+    const LoopFence fence;
+    tbb::parallel_for_each(first.begin(), first.end(), [&](const Turn& turn, tbb::feeder<Turn>& feeder) {
+        fence.enter();
+        work(turn.block, kinds[turn.step]);
+        const auto countDown = [&](std::uint32_t block, std::size_t step) {
+            if (step < kinds.size() && waits[step * blocks + block].fetch_sub(1, std::memory_order_acq_rel) == 1) feeder.add({block, static_cast<std::uint32_t>(step)});
+        };
+        for (const std::uint32_t other : beside_[turn.block].later) countDown(other, turn.step);
+        countDown(turn.block, turn.step + 1);
+        for (const std::uint32_t other : beside_[turn.block].earlier) countDown(other, turn.step + 1);
+        fence.leave();
+    });
+    fence.join();
 }
 
 } // namespace i2b

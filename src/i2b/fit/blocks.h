@@ -4,6 +4,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,10 @@ class NodeBlocks {
     }
     // Ascending numbers of blocks that share no corner.
     const std::vector<std::vector<std::uint32_t>>& colours() const { return colours_; }
+    // work(block, kind) for all blocks, kind by kind and colour by colour; but no block waits for others than those that it shares
+    // corners with, which come to the same.
+    using Work = std::function<void(std::size_t, Kind)>;
+    void sweep(std::span<const Kind> kinds, const Work& work) const;
 
   private:
     void gather(const Band& band);
@@ -37,6 +42,8 @@ class NodeBlocks {
     std::vector<std::array<std::size_t, 4>> kindFrom_;    // per block: where each kind begins, and where the block ends
     std::vector<std::uint32_t> blockOf_;                  // per node, while these are found
     std::vector<std::vector<std::uint32_t>> colours_;
+    struct Beside { std::vector<std::uint32_t> earlier, later; }; // blocks of lower and of higher colours that share corners
+    std::vector<Beside> beside_;                          // per block
 };
 
 } // namespace i2b

@@ -29,12 +29,6 @@ inline double energyOf(double trace, double det) {
     return 0.25 * trace / (root * root) + 0.125 * (det + 1 / det);
 }
 
-// work(nodes) for those of a kind in each block, at once for blocks that share no corner.
-template <class Work>
-void sweepBlocks(const NodeBlocks& blocks, NodeBlocks::Kind kind, const Work& work) {
-    for (const std::vector<std::uint32_t>& colour : blocks.colours()) parallelFor(colour.size(), [&](std::size_t i) { work(blocks.nodes(colour[i], kind)); }, 1);
-}
-
 // Drops the components of a move that would leave the sides of the domain box.
 inline Vec3 withinSides(Vec3 move, std::uint8_t outside) {
     for (int axis = 0; axis < 3; ++axis) {

@@ -1,4 +1,5 @@
 #include "i2b/fit/crossings.h"
+#include "i2b/core/collect.h"
 #include "i2b/core/parallel.h"
 #include <algorithm>
 
@@ -216,10 +217,10 @@ WallMarks markWall(const Band& band, const SurfaceIndex& index, const FeatureInd
 std::vector<EdgeCrossing> findCrossings(const Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features,
                                         const std::vector<Vec3>& x, const WallMarks& marks) {
     const Finder finder{front, band, index, features, x, marks};
-    std::vector<EdgeCrossing> found(front.mesh.n_edges());
-    parallelFor(found.size(), [&](std::size_t e) { found[e] = finder.on(static_cast<std::int32_t>(e)); });
-    std::erase_if(found, [](const EdgeCrossing& c) { return !c.alive; });
-    return found;
+    const RawVector<EdgeCrossing> found = collect<EdgeCrossing>(front.mesh.n_edges(), [&](std::size_t e, const auto& put) {
+        if (const EdgeCrossing crossing = finder.on(static_cast<std::int32_t>(e)); crossing.alive) put(crossing);
+    }, 256);
+    return {found.begin(), found.end()};
 }
 
 void followFront(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, std::vector<EdgeCrossing>& crossings) {

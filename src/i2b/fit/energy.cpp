@@ -4,6 +4,7 @@
 #include "i2b/fit/local_corners.h"
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 
 namespace i2b {
 namespace {
@@ -173,16 +174,15 @@ bool minimiseEnergy(const Band& band, const SurfaceIndex& index, const FeatureIn
             break;
         }
     };
+    constexpr std::array kinds{NodeBlocks::wall, NodeBlocks::front, NodeBlocks::core};
     for (double lambda : options.wallWeights) {
         context.checkCancelled();
         if (options.budget.isOver()) return false;
-        for (const NodeBlocks::Kind kind : {NodeBlocks::wall, NodeBlocks::front, NodeBlocks::core}) {
-            sweepBlocks(band.blocks, kind, [&](std::span<const std::int32_t> nodes) {
-                LocalCorners corners;
-                for (const std::int32_t n : nodes)
-                    if (active[static_cast<std::size_t>(n)]) moveOne(static_cast<std::size_t>(n), lambda, corners);
-            });
-        }
+        band.blocks.sweep(kinds, [&](std::size_t block, NodeBlocks::Kind kind) {
+            LocalCorners corners;
+            for (const std::int32_t n : band.blocks.nodes(block, kind))
+                if (active[static_cast<std::size_t>(n)]) moveOne(static_cast<std::size_t>(n), lambda, corners);
+        });
     }
     return true;
 }

@@ -1,4 +1,5 @@
 #include "i2b/fit/fit.h"
+#include "i2b/core/collect.h"
 #include "i2b/core/parallel.h"
 #include "i2b/fit/bends.h"
 #include "i2b/fit/between.h"
@@ -99,21 +100,22 @@ bool finish(const Band& band, const SurfaceIndex& index, const FeatureIndex& fea
 }
 
 void store(const Band& band, const std::vector<Vec3>& x, Front& front) {
-    for (std::size_t v = 0; v < band.walls; ++v) {
+    parallelFor(band.walls, [&](std::size_t v) {
         front.mesh.set_point(FrontMesh::VertexHandle(static_cast<int>(v)), {x[v].x, x[v].y, x[v].z});
         front.front[v] = x[static_cast<std::size_t>(band.frontNode[v])];
-    }
-    front.movedPoints.clear();
-    front.movedTo.clear();
-    front.movedSize.clear();
-    front.movedOutside.clear();
-    for (std::size_t n = band.walls + band.fronts; n < band.movable; ++n) {
-        if (x[n] == band.start[n]) continue;
-        front.movedPoints.push_back(band.corePoint[n - band.walls]);
-        front.movedTo.push_back(x[n]);
-        front.movedSize.push_back(static_cast<float>(band.h[n]));
-        front.movedOutside.push_back(band.outside[n]);
-    }
+    }, 2048);
+    const std::size_t core = band.walls + band.fronts;
+    const RawVector<std::uint32_t> moved = collect<std::uint32_t>(band.movable - core, [&](std::size_t i, const auto& put) {
+        if (!(x[core + i] == band.start[core + i])) put(static_cast<std::uint32_t>(core + i));
+    }, 4096);
+    front.movedPoints.resize(moved.size()), front.movedTo.resize(moved.size()), front.movedSize.resize(moved.size()), front.movedOutside.resize(moved.size());
+    parallelFor(moved.size(), [&](std::size_t i) {
+        const std::size_t n = moved[i];
+        front.movedPoints[i] = band.corePoint[n - band.walls];
+        front.movedTo[i] = x[n];
+        front.movedSize[i] = static_cast<float>(band.h[n]);
+        front.movedOutside[i] = band.outside[n];
+    }, 4096);
 }
 
 std::vector<Front::Hanging> hangingPoints(const Band& band) {

@@ -6,6 +6,7 @@
 #include "i2b/fit/lie.h"
 #include "i2b/front/replace_faces.h"
 #include <algorithm>
+#include <atomic>
 
 namespace i2b {
 namespace {
@@ -270,15 +271,16 @@ std::vector<RoomWish> Inserter::roomWanted(const std::vector<Cuts>& cuts) const 
 // Gives up crossings of faces that cannot take them, and those that end no cut. False: nothing to give up.
 bool Inserter::prune(const std::vector<Cuts>& cuts) {
     std::vector<std::uint8_t> used(crossings_.size(), 0), refused(crossings_.size(), 0);
-    for (const Cuts& c : cuts) {
-        for (const Ring& piece : c.pieces) {
+    const auto mark = [](std::uint8_t& flag) { std::atomic_ref<std::uint8_t>(flag).store(1, std::memory_order_relaxed); };
+    parallelFor(cuts.size(), [&](std::size_t i) {
+        for (const Ring& piece : cuts[i].pieces) {
             for (const Place& p : piece) {
                 if (p.crossing < 0) continue;
-                used[std::size_t(p.crossing)] |= p.isEnd;
-                refused[std::size_t(p.crossing)] |= !c.valid;
+                if (p.isEnd) mark(used[std::size_t(p.crossing)]);
+                if (!cuts[i].valid) mark(refused[std::size_t(p.crossing)]);
             }
         }
-    }
+    });
     bool any = false;
     for (std::size_t i = 0; i < crossings_.size(); ++i) {
         if (!crossings_[i].alive || (used[i] && !refused[i])) continue;

@@ -36,8 +36,9 @@ void snapExactly(const Band& band, const SurfaceIndex& index, const FeatureIndex
         }
         x[b] = old;
     };
-    sweepBlocks(band.blocks, NodeBlocks::wall, [&](std::span<const std::int32_t> nodes) {
-        for (const std::int32_t n : nodes) snapOne(static_cast<std::size_t>(n));
+    constexpr std::array kinds{NodeBlocks::wall};
+    band.blocks.sweep(kinds, [&](std::size_t block, NodeBlocks::Kind kind) {
+        for (const std::int32_t n : band.blocks.nodes(block, kind)) snapOne(static_cast<std::size_t>(n));
     });
 }
 
