@@ -160,10 +160,10 @@ LineSamples captureLines(const PolyMesh& mesh, const Wall& wall, const Surface& 
                          const LineAsk& isCaptured) {
     if (lines.triangles.empty()) return {};
     std::vector<double> sizes = wall.faceH;
-    std::sort(sizes.begin(), sizes.end());
-    const double largestH = sizes.back();
-    // A few slivers must not set the length of the pieces.
-    std::vector<Piece> pieces = cutPieces(lines, 2 * sizes[sizes.size() / 20]);
+    const double largestH = *std::max_element(sizes.begin(), sizes.end());
+    const auto small = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 20); // a few slivers must not set the length of the pieces
+    std::nth_element(sizes.begin(), small, sizes.end());
+    std::vector<Piece> pieces = cutPieces(lines, 2 * *small);
     double farthest = 0;
     for (const Piece& p : pieces) farthest = std::max(farthest, largestH / 2 + (p.to - p.from));
     std::vector<std::uint32_t> faceOf;

@@ -207,17 +207,17 @@ void measureCells(Measurement& m) {
     const Directions directions = directionsOf(m.report);
     const double fullness = DictionaryBounds(m.dictionary).determinant;
     m.moments.resize(cells);
-    constexpr Index block = Index(1) << 17;
-    std::vector<double> determinants(std::min(block, cells));
+    constexpr Index block = Index(1) << 18, held = 2 * block; // values of two blocks at a time
+    RawVector<double> determinants(std::min(held, cells));
     double volumeSum = 0, determinantSum = 0;
     CellPart total;
     const auto measure = [&](Index begin, Index end, CellPart& part) {
-        CellStretch(m, directions, fullness, total.aspectRatio.most).measure(begin, end, part, &determinants[begin % block]);
+        CellStretch(m, directions, fullness, total.aspectRatio.most).measure(begin, end, part, &determinants[begin % held]);
     };
     orderedBlocks(cells, block, total, measure, [&](Index begin, Index end) {
         for (Index c = begin; c < end; ++c) {
             volumeSum += m.moments[c].volume;
-            determinantSum += determinants[c - begin];
+            determinantSum += determinants[c % held];
         }
     });
     storeOrder(m, total);

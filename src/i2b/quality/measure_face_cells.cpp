@@ -138,7 +138,10 @@ class FaceStretch {
         };
         for (Index f = begin; f < end; ++f) {
             flat[f - begin] = -1;
-            if (!m_.outerFaces.empty() && m_.outerFaces[f] != 0) continue;
+            if (!m_.outerFaces.empty() && m_.outerFaces[f] != 0) {
+                if (f < m_.mesh.neighbour.size()) values[f - begin] = {};
+                continue;
+            }
             if (!quads_.add(f, clear, odd)) odd(f);
         }
         quads_.finish(clear, odd);
@@ -213,21 +216,21 @@ void measureFaces(Measurement& m) {
     const DictionaryBounds bounds(m.dictionary);
     const FaceCells faceCells(m, bounds);
     const QuadBounds quads = faceCells.quadBounds(nearDistanceSquared(m.report.box));
-    constexpr Index block = Index(1) << 17;
-    std::vector<PairValues> values(std::min(block, faces));
-    std::vector<double> flat(values.size());
+    constexpr Index block = Index(1) << 18, held = 2 * block; // values of two blocks at a time
+    RawVector<PairValues> values(std::min(held, faces));
+    RawVector<double> flat(values.size());
     Sums sum;
     FacesPart total;
     const auto measure = [&](Index begin, Index end, FacesPart& part) {
-        FaceStretch(m, bounds, faceCells, quads).measure(begin, end, part, &flat[begin % block], &values[begin % block]);
+        FaceStretch(m, bounds, faceCells, quads).measure(begin, end, part, &flat[begin % held], &values[begin % held]);
     };
     orderedBlocks(faces, block, total, measure, [&](Index begin, Index end) {
         for (Index f = begin; f < end; ++f)
-            if (flat[f - begin] >= 0) sum.flat += flat[f - begin];
+            if (flat[f % held] >= 0) sum.flat += flat[f % held];
         for (Index f = begin; f < std::min(end, internal); ++f) {
-            sum.ortho += values[f - begin].ortho;
-            sum.weight += values[f - begin].weight;
-            sum.ratio += values[f - begin].ratio;
+            sum.ortho += values[f % held].ortho;
+            sum.weight += values[f % held].weight;
+            sum.ratio += values[f % held].ratio;
         }
     });
     storeFaces(m, total.alone, sum.flat);

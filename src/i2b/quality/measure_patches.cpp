@@ -1,6 +1,9 @@
 // Patches as surfaces, zones, regions, and the directions that empty and wedge patches take out.
+#include "i2b/core/collect.h"
 #include "i2b/quality/measure_steps.h"
 #include <algorithm>
+#include <atomic>
+#include <functional>
 #include <numbers>
 #include <set>
 #include <tbb/parallel_sort.h>
@@ -48,36 +51,33 @@ std::vector<std::int32_t> patchPoints(const PolyMesh& mesh, const Patch& patch) 
 // On a closed surface, where every edge has two faces: points whose faces do not all hang together through
 // the edges at the point. Each edge links its two faces at both of its ends; the faces at a point make one
 // ring when the links and the faces' corners form a single cycle.
-std::vector<std::int32_t> pinchedPoints(const RawVector<EdgeUse>& uses) {
+RawVector<std::int32_t> pinchedPoints(const RawVector<EdgeUse>& uses) {
     struct Link {
         std::int32_t point, face, other;
     };
-    std::vector<Link> links;
-    links.reserve(uses.size() * 2);
-    for (Index i = 0; i + 1 < uses.size(); i += 2)
-        for (const std::int32_t p : {uses[i].a, uses[i].b}) {
-            links.push_back({p, uses[i].face, uses[i + 1].face});
-            links.push_back({p, uses[i + 1].face, uses[i].face});
-        }
+    RawVector<Link> links(uses.size() / 2 * 4);
+    parallelFor(uses.size() / 2, [&](Index i) {
+        const EdgeUse &use = uses[2 * i], &other = uses[2 * i + 1];
+        links[4 * i] = {use.a, use.face, other.face}, links[4 * i + 1] = {use.a, other.face, use.face};
+        links[4 * i + 2] = {use.b, use.face, other.face}, links[4 * i + 3] = {use.b, other.face, use.face};
+    }, 4096);
     tbb::parallel_sort(links.begin(), links.end(), [](const Link& x, const Link& y) {
         return std::tie(x.point, x.face, x.other) < std::tie(y.point, y.face, y.other);
     });
-    std::vector<std::int32_t> pinched, ring;
-    for (Index i = 0, j = 0; i < links.size(); i = j) {
-        while (j < links.size() && links[j].point == links[i].point) ++j;
-        ring.assign(1, links[i].face);
+    const auto isPinched = [&](Index i, Index j) {
+        std::vector<std::int32_t> ring{links[i].face};
         for (Index k = 0; k < ring.size(); ++k)
             for (Index l = i; l < j; ++l)
-                if (links[l].face == ring[k] &&
-                    std::find(ring.begin(), ring.end(), links[l].other) == ring.end())
-                    ring.push_back(links[l].other);
-        for (Index l = i; l < j; ++l)
-            if (std::find(ring.begin(), ring.end(), links[l].face) == ring.end()) {
-                pinched.push_back(links[i].point);
-                break;
-            }
-    }
-    return pinched;
+                if (links[l].face == ring[k] && std::ranges::find(ring, links[l].other) == ring.end()) ring.push_back(links[l].other);
+        return std::any_of(links.begin() + static_cast<std::ptrdiff_t>(i), links.begin() + static_cast<std::ptrdiff_t>(j),
+                           [&](const Link& link) { return std::ranges::find(ring, link.face) == ring.end(); });
+    };
+    return collect<std::int32_t>(links.size(), [&](Index i, const auto& put) {
+        if (i > 0 && links[i - 1].point == links[i].point) return;
+        Index j = i + 1;
+        while (j < links.size() && links[j].point == links[i].point) ++j;
+        if (isPinched(i, j)) put(links[i].point);
+    });
 }
 
 PatchQuality measurePatch(const PolyMesh& mesh, const Patch& patch, std::vector<std::int32_t>& nonManifold) {
@@ -89,20 +89,21 @@ PatchQuality measurePatch(const PolyMesh& mesh, const Patch& patch, std::vector<
     quality.points = static_cast<std::int64_t>(points.size());
     for (const std::int32_t p : points) quality.box.add(mesh.points[Index(p)]);
     const RawVector<EdgeUse> uses = patchEdges(mesh, patch);
-    bool open = false, over = false;
-    for (Index i = 0, j = 0; i < uses.size(); i = j) {
+    std::atomic<bool> isOpen = false;
+    const RawVector<std::int32_t> shared = collect<std::int32_t>(uses.size(), [&](Index i, const auto& put) { // each edge at its first use
+        if (i > 0 && uses[i - 1].sameEdge(uses[i])) return;
+        Index j = i + 1;
         while (j < uses.size() && uses[j].sameEdge(uses[i])) ++j;
-        open |= j - i == 1;
-        if (j - i <= 2) continue;
-        over = true;
-        nonManifold.push_back(uses[i].a);
-        nonManifold.push_back(uses[i].b);
-    }
+        if (j - i == 1) isOpen.store(true, std::memory_order_relaxed);
+        if (j - i > 2) put(uses[i].a), put(uses[i].b);
+    });
+    nonManifold.insert(nonManifold.end(), shared.begin(), shared.end());
+    const bool open = isOpen, over = !shared.empty();
     quality.topology = over   ? SurfaceTopology::sharedEdge
                        : open ? SurfaceTopology::open
                               : SurfaceTopology::closed;
     if (over || open) return quality;
-    const std::vector<std::int32_t> pinched = pinchedPoints(uses);
+    const RawVector<std::int32_t> pinched = pinchedPoints(uses);
     if (!pinched.empty()) quality.topology = SurfaceTopology::sharedPoint;
     nonManifold.insert(nonManifold.end(), pinched.begin(), pinched.end());
     return quality;
@@ -181,6 +182,13 @@ void measureZones(Measurement& m) {
 void measureRegions(Measurement& m) {
     const PolyMesh& mesh = m.mesh;
     std::vector<std::int32_t> region = regionRoots(mesh); // becomes the number of the region
+    const bool isOne = orderedReduce(region.size(), true, [&](Index begin, Index end) {
+        return std::all_of(region.begin() + static_cast<std::ptrdiff_t>(begin), region.begin() + static_cast<std::ptrdiff_t>(end), [](std::int32_t root) { return root == 0; });
+    }, std::logical_and<>());
+    if (isOne && !region.empty()) {
+        m.report.regions.emplace_back().cells = mesh.cells;
+        return;
+    }
     for (Index c = 0; c < region.size(); ++c) {
         const auto root = static_cast<Index>(region[c]);
         if (root == c) {
@@ -232,8 +240,9 @@ void measureDirections(Measurement& m) {
     if (anyEmpty) removeDirections(emptySum, r.solutionDirections);
     r.geometricDirections = r.solutionDirections;
     if (anyWedge) removeDirections(wedgeSum, r.geometricDirections);
-    for (std::int32_t f = mesh.internalFaces(); f < mesh.faces(); ++f) {
-        const Vec3 area = measureFace(mesh, f).area;
+    RawVector<Vec3> areas(Index(mesh.faces() - mesh.internalFaces()));
+    parallelFor(areas.size(), [&](Index i) { areas[i] = measureFace(mesh, mesh.internalFaces() + static_cast<std::int32_t>(i)).area; }, 1024);
+    for (const Vec3& area : areas) { // one after the other, as checkMesh does: what is left of the sum is rounding
         areaSum += area;
         areaSize += norm(area);
     }

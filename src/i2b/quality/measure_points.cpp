@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <functional>
 #include <tbb/parallel_sort.h>
 
 namespace i2b {
@@ -154,14 +155,21 @@ void countEdges(Measurement& m, const Rows& pointFaces) {
     const PolyMesh& mesh = m.mesh;
     const std::int32_t internalFaces = mesh.internalFaces();
     std::vector<std::uint8_t> onBoundary(mesh.points.size(), 0);
-    std::int64_t internal = 0;
-    for (Index p = 0; p < mesh.points.size(); ++p) {
-        const auto faces = pointFaces[static_cast<std::int32_t>(p)];
-        onBoundary[p] = !faces.empty() && faces.back() >= internalFaces ? 1 : 0;
-        internal += onBoundary[p] == 0 ? 1 : 0;
-    }
-    for (Index p = Index(internal); p < mesh.points.size(); ++p)
-        if (onBoundary[p] == 0 && !pointFaces[static_cast<std::int32_t>(p)].empty()) return;
+    const auto internal = orderedReduce(mesh.points.size(), std::int64_t(0), [&](Index begin, Index end) {
+        std::int64_t count = 0;
+        for (Index p = begin; p < end; ++p) {
+            const auto faces = pointFaces[static_cast<std::int32_t>(p)];
+            onBoundary[p] = !faces.empty() && faces.back() >= internalFaces ? 1 : 0;
+            count += onBoundary[p] == 0 ? 1 : 0;
+        }
+        return count;
+    }, std::plus<>());
+    const bool comeFirst = orderedReduce(mesh.points.size() - Index(internal), true, [&](Index begin, Index end) {
+        for (Index p = Index(internal) + begin; p < Index(internal) + end; ++p)
+            if (onBoundary[p] == 0 && !pointFaces[static_cast<std::int32_t>(p)].empty()) return false;
+        return true;
+    }, std::logical_and<>());
+    if (!comeFirst) return;
     EdgeCounts total;
     orderedLoop(mesh.points.size(), total, [&](Index begin, Index end, EdgeCounts& part) {
         std::vector<std::pair<std::int32_t, bool>> ends; // higher end; not on this boundary face

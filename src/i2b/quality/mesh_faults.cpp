@@ -1,5 +1,5 @@
 #include "i2b/quality/mesh_faults.h"
-#include "i2b/core/parallel.h"
+#include "i2b/core/collect.h"
 #include "i2b/quality/face_tets.h"
 #include "i2b/quality/glances.h"
 #include "i2b/quality/measures.h"
@@ -16,6 +16,7 @@ using Index = std::size_t;
 constexpr double flat = 1e-9; // a pyramid below this part of its cell's size counts as wrong
 constexpr double doubtful = 20 * undividedShare; // of tetrahedra: up to there their quality is looked at
 constexpr double clearShare = 2 * undividedShare; // of tetrahedra: faces that a glance finds over that need no look
+constexpr Index together = 32; // cells that a thread measures anew in a row
 constexpr double mostThin = 0.02; // faces for each thin cell that may have a fault of one kind for it to count
 
 bool isBad(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::span<const FaceShape> shapes, std::int32_t cell,
@@ -144,16 +145,21 @@ std::vector<std::int32_t> MeshFaults::cellsAround(const std::vector<std::int32_t
         changed_[Index(cell)] = 1;
         cells.push_back(cell);
     };
-    for (const std::int32_t cell : seeds) {
-        const auto faces = cellFaces_[cell];
-        if (std::any_of(faces.begin(), faces.end(), [&](std::int32_t f) { return hasMoved(f); })) add(cell);
-    }
-    for (Index i = 0; i < cells.size(); ++i) {
-        for (const std::int32_t f : cellFaces_[cells[i]]) {
-            if (f >= mesh_.internalFaces() || !hasMoved(f)) continue;
-            add(mesh_.owner[Index(f)]);
-            add(mesh_.neighbour[Index(f)]);
-        }
+    const auto addAll = [&](const RawVector<std::int32_t>& found) { std::ranges::for_each(found, add); };
+    addAll(collect<std::int32_t>(seeds.size(), [&](Index i, const auto& put) {
+        const auto faces = cellFaces_[seeds[i]];
+        if (std::any_of(faces.begin(), faces.end(), [&](std::int32_t f) { return hasMoved(f); })) put(seeds[i]);
+    }, 512));
+    for (Index first = 0; first < cells.size();) {
+        const Index last = cells.size();
+        addAll(collect<std::int32_t>(last - first, [&](Index i, const auto& put) {
+            for (const std::int32_t f : cellFaces_[cells[first + i]]) {
+                if (f >= mesh_.internalFaces() || !hasMoved(f)) continue;
+                const std::int32_t own = mesh_.owner[Index(f)], other = own == cells[first + i] ? mesh_.neighbour[Index(f)] : own;
+                if (!changed_[Index(other)]) put(other);
+            }
+        }, 512));
+        first = last;
     }
     return cells;
 }
@@ -163,13 +169,22 @@ void MeshFaults::update(const std::vector<std::int32_t>& movedPoints, const std:
     std::vector<std::int32_t> cells = cellsAround(seeds);
     for (const std::int32_t c : cells) changed_[Index(c)] = 0;
     for (const std::int32_t p : movedPoints) moved_[Index(p)] = 0;
-    update(std::move(cells));
+    update(cells);
 }
 
-void MeshFaults::update(std::vector<std::int32_t> cells) {
-    std::sort(cells.begin(), cells.end());
+void MeshFaults::follow(const std::vector<std::int32_t>& cells) {
+    parallelChunks(cells.size(), together, [&](Index begin, Index end, Index) {
+        CellFaceShapes shapes(mesh_);
+        for (Index i = begin; i < end; ++i) {
+            const auto faces = cellFaces_[cells[i]];
+            moments_[Index(cells[i])] = measureCell(mesh_, faces, shapes.of(faces), cells[i]);
+        }
+    });
+}
+
+void MeshFaults::update(const std::vector<std::int32_t>& cells) {
     for (const std::int32_t c : cells) changed_[Index(c)] = 1;
-    parallelChunks(cells.size(), 256, [&](Index begin, Index end, Index) {
+    parallelChunks(cells.size(), together, [&](Index begin, Index end, Index) {
         CellFaceShapes shapes(mesh_);
         for (Index i = begin; i < end; ++i) measureCellAt(cells[i], shapes);
     });
@@ -178,7 +193,7 @@ void MeshFaults::update(std::vector<std::int32_t> cells) {
             const std::int32_t owner = mesh_.owner[Index(f)];
             if (owner == cells[i] || !changed_[Index(owner)]) measureFaceAt(f); // each face by one of its cells
         }
-    });
+    }, together);
     for (const std::int32_t c : cells) changed_[Index(c)] = 0;
 }
 

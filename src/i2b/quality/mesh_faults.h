@@ -26,7 +26,9 @@ class MeshFaults {
 
     // After points have moved. seeds: cells among which every moved point has one that uses it.
     void update(const std::vector<std::int32_t>& movedPoints, const std::vector<std::int32_t>& seeds);
-    void update(std::vector<std::int32_t> cells); // all that use a moved point, each once
+    void update(const std::vector<std::int32_t>& cells); // all that use a moved point, each once
+    // Of the same the moments alone, for moves that are judged by these; update() is to follow.
+    void follow(const std::vector<std::int32_t>& cells);
 
     const CellMoments* moments() const { return moments_.data(); } // of all cells
     const QualityLimits& limits() const { return limits_; }

@@ -1,4 +1,5 @@
 #include "i2b/quality/mesh_nodes.h"
+#include "i2b/core/parallel.h"
 #include <algorithm>
 #include <tbb/parallel_sort.h>
 
@@ -9,17 +10,17 @@ using Index = std::size_t;
 
 MeshNodes::MeshNodes(Front& front, const LayerStack& layers)
     : front_(front), layers_(layers), core_(front.corePoints + static_cast<std::int32_t>(front.inserted.size())) {
-    std::vector<Fan> fans(front.firstInserted());
-    for (Index v = 0; v < fans.size(); ++v) fans[v] = {front.corePoint[v], static_cast<std::int32_t>(v)};
+    RawVector<Fan> fans(front.firstInserted());
+    parallelFor(fans.size(), [&](Index v) { fans[v] = {front.corePoint[v], static_cast<std::int32_t>(v)}; }, 4096);
     tbb::parallel_sort(fans);
-    points_.reserve(fans.size()), vertices_.reserve(fans.size());
-    for (const Fan& f : fans) points_.push_back(f.point), vertices_.push_back(f.vertex);
+    points_.resize(fans.size()), vertices_.resize(fans.size());
+    parallelFor(fans.size(), [&](Index i) { points_[i] = fans[i].point, vertices_[i] = fans[i].vertex; }, 4096);
     for (Index i = 0; i < front.inserted.size(); ++i) {
         for (std::int32_t end : front.inserted[i].ends) children_.push_back({end, static_cast<std::int32_t>(front.firstInserted() + i)});
     }
     std::sort(children_.begin(), children_.end());
-    moved_.reserve(front.movedPoints.size());
-    for (Index i = 0; i < front.movedPoints.size(); ++i) moved_.emplace_back(front.movedPoints[i], static_cast<std::int32_t>(i));
+    moved_.resize(front.movedPoints.size());
+    parallelFor(moved_.size(), [&](Index i) { moved_[i] = {front.movedPoints[i], static_cast<std::int32_t>(i)}; }, 4096);
     tbb::parallel_sort(moved_);
 }
 
@@ -29,8 +30,8 @@ std::pair<const std::int32_t*, const std::int32_t*> MeshNodes::fansOf(std::int32
 }
 
 std::int32_t MeshNodes::movedPlace(std::int32_t point) const {
-    const auto at = std::lower_bound(moved_.begin(), moved_.end(), std::pair{point, std::int32_t(0)});
-    return at != moved_.end() && at->first == point ? at->second : -1;
+    const auto at = std::lower_bound(moved_.begin(), moved_.end(), MovedPoint{point, 0});
+    return at != moved_.end() && at->point == point ? at->place : -1;
 }
 
 void MeshNodes::nodesOf(std::int32_t point, std::vector<MeshNode>& out) const {

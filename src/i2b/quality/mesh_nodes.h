@@ -31,6 +31,7 @@ class MeshNodes {
     std::uint8_t outside(const MeshNode& node) const; // as Front::outside
     // The wall vertices over a front node.
     std::pair<const std::int32_t*, const std::int32_t*> fansOf(std::int32_t corePoint) const;
+    std::int32_t movedPlace(std::int32_t point) const; // in Front::movedPoints, or -1
     // Where all mesh points that hang on the node go with it.
     void follow(const MeshNode& node, const Vec3& to, Moved& out) const;
     void moveTo(const MeshNode& node, const Vec3& to);
@@ -40,14 +41,14 @@ class MeshNodes {
     struct Child { std::int32_t parent, vertex; friend auto operator<=>(const Child&, const Child&) = default; };
     void stack(std::int32_t vertex, const Vec3& front, const Vec3& wall, Moved& out) const;
     Vec3 frontUnder(std::int32_t vertex, const Vec3& wall) const;
-    std::int32_t movedPlace(std::int32_t point) const; // in Front::movedPoints, or -1
 
     Front& front_;
     const LayerStack& layers_;
     std::int32_t core_; // points of the kept cells
-    std::vector<std::int32_t> points_, vertices_; // fans by core point
+    RawVector<std::int32_t> points_, vertices_; // fans by core point
     std::vector<Child> children_;                 // inserted vertices by the ends of their edge
-    std::vector<std::pair<std::int32_t, std::int32_t>> moved_; // core point, place in Front::movedPoints
+    struct MovedPoint { std::int32_t point, place; friend auto operator<=>(const MovedPoint&, const MovedPoint&) = default; };
+    RawVector<MovedPoint> moved_;                 // by core point, with its place in Front::movedPoints
 };
 
 } // namespace i2b

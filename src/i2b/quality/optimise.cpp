@@ -1,10 +1,13 @@
 #include "i2b/quality/optimise.h"
 #include "i2b/core/numbering.h"
 #include "i2b/core/parallel.h"
+#include "i2b/core/sort_unique.h"
 #include "i2b/quality/optimise_worker.h"
 #include <algorithm>
 #include <bit>
 #include <numeric>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_sort.h>
 
 namespace i2b {
 namespace {
@@ -34,7 +37,7 @@ void Optimiser::addNodes(std::int32_t face, std::int32_t cell, std::vector<std::
 }
 
 std::vector<Optimiser::Task> Optimiser::asTasks(std::vector<std::pair<MeshNode, std::int32_t>> found) {
-    std::sort(found.begin(), found.end());
+    tbb::parallel_sort(found.begin(), found.end());
     std::vector<Task> tasks;
     for (const auto& [node, cell] : found) {
         if (tasks.empty() || tasks.back().node != node) tasks.push_back({node, cell, {}, {}});
@@ -43,10 +46,15 @@ std::vector<Optimiser::Task> Optimiser::asTasks(std::vector<std::pair<MeshNode, 
 }
 
 std::vector<Optimiser::Task> Optimiser::tasksOf(const std::vector<std::int32_t>& cells) const {
+    constexpr Index chunk = 256;
+    std::vector<std::vector<std::pair<MeshNode, std::int32_t>>> parts((cells.size() + chunk - 1) / chunk);
+    parallelChunks(cells.size(), chunk, [&](Index begin, Index end, Index part) {
+        for (Index i = begin; i < end; ++i)
+            for (const std::int32_t f : cellFaces_[cells[i]]) addNodes(f, cells[i], parts[part]);
+        sortUnique(parts[part]); // a node is found at many faces
+    });
     std::vector<std::pair<MeshNode, std::int32_t>> found;
-    for (const std::int32_t c : cells) {
-        for (const std::int32_t f : cellFaces_[c]) addNodes(f, c, found);
-    }
+    for (const auto& part : parts) found.insert(found.end(), part.begin(), part.end());
     return asTasks(std::move(found));
 }
 
@@ -141,14 +149,12 @@ std::vector<std::vector<std::uint32_t>> Optimiser::colour(const std::vector<Task
 
 template <class Move>
 std::int64_t Optimiser::sweep(std::vector<Task>& tasks, const Move& move, RestingNodes* resting) {
+    tbb::enumerable_thread_specific<Worker> workers([this] { return Worker(*this); });
     std::vector<std::uint8_t> rests(tasks.size(), 0);
-    parallelChunks(tasks.size(), 32, [&](Index begin, Index end, Index) {
-        Worker worker(*this);
-        for (Index t = begin; t < end; ++t) {
-            findCells(tasks[t], worker);
-            rests[t] = resting && resting->has(tasks[t].node, tasks[t].reads);
-        }
-    });
+    parallelFor(tasks.size(), [&](Index t) {
+        findCells(tasks[t], workers.local());
+        rests[t] = resting && resting->has(tasks[t].node, tasks[t].reads);
+    }, 8);
     Index left = 0;
     for (Index t = 0; t < tasks.size(); ++t) {
         if (rests[t]) continue;
@@ -157,15 +163,13 @@ std::int64_t Optimiser::sweep(std::vector<Task>& tasks, const Move& move, Restin
     }
     tasks.resize(left);
     std::int64_t moves = 0;
+    std::vector<std::int32_t> touched;
     for (const std::vector<std::uint32_t>& group : colour(tasks)) {
         std::vector<std::uint8_t> hasMoved(group.size(), 0);
         std::vector<NodeMove> from;
         if (tracked_)
             for (const std::uint32_t t : group) from.push_back(whereIs(tasks[t].node, tasks[t].cell));
-        parallelChunks(group.size(), 8, [&](Index begin, Index end, Index) {
-            Worker worker(*this);
-            for (Index i = begin; i < end; ++i) hasMoved[i] = move(tasks[group[i]], worker);
-        });
+        parallelFor(group.size(), [&](Index i) { hasMoved[i] = move(tasks[group[i]], workers.local()); }, 1);
         std::vector<std::int32_t> changed; // each once: no task of a group reads what another changes
         for (Index i = 0; i < group.size(); ++i) {
             const Task& task = tasks[group[i]];
@@ -177,8 +181,11 @@ std::int64_t Optimiser::sweep(std::vector<Task>& tasks, const Move& move, Restin
             changed.insert(changed.end(), task.cells.begin(), task.cells.end());
         }
         if (resting) resting->next();
-        faults_.update(std::move(changed));
+        faults_.follow(changed);
+        touched.insert(touched.end(), changed.begin(), changed.end());
     }
+    sortUnique(touched);
+    faults_.update(touched);
     return moves;
 }
 

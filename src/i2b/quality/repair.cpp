@@ -100,7 +100,7 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, L
         return poor.all == 0 && faults.badCells().empty();
     };
     const auto stepBack = [&](RetreatFrom from) {
-        RetreatSummary r = retreatFromFaults(mesh, cellFaces, faults, front, lattice, layers, startThickness, from);
+        RetreatSummary r = retreatFromFaults(mesh, cellFaces, faults, front, optimiser.nodes(), lattice, layers, startThickness, from);
         summary.rounds += r.rounds, summary.retracted += r.retracted;
         summary.wrongCells = std::move(r.wrongCells);
         summary.remaining = static_cast<std::int64_t>(summary.wrongCells.size());

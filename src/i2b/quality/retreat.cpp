@@ -1,7 +1,9 @@
 #include "i2b/quality/retreat.h"
-#include "i2b/core/parallel.h"
+#include "i2b/core/collect.h"
 #include "i2b/core/raw_vector.h"
+#include "i2b/core/sort_unique.h"
 #include <algorithm>
+#include <tbb/parallel_sort.h>
 
 namespace i2b {
 namespace {
@@ -23,8 +25,8 @@ struct Path {
 // way that it has gone; a way only where it has moved.
 class Nodes {
   public:
-    Nodes(const Front& front, const LatticeMesh& lattice, LayerStack& layers, double thickness)
-        : front_(front), layers_(layers), core_(static_cast<std::size_t>(front.corePoints) + front.inserted.size()) {
+    Nodes(const Front& front, const MeshNodes& meshNodes, const LatticeMesh& lattice, LayerStack& layers, double thickness)
+        : front_(front), meshNodes_(meshNodes), layers_(layers), core_(static_cast<std::size_t>(front.corePoints) + front.inserted.size()) {
         const RawVector<Vec3> start = lattice.latticePoints();
         const auto startOf = [&](std::int32_t point) { return start[static_cast<std::size_t>(point)]; };
         const std::size_t fans = front.front.size();
@@ -40,9 +42,10 @@ class Nodes {
             const auto p = static_cast<std::size_t>(i.ends[0]), q = static_cast<std::size_t>(i.ends[1]);
             wall_.push_back({wall_[p].start + (wall_[q].start - wall_[p].start) * i.t, front_.wall(wall_.size())});
         }
-        beta.assign(core_ + fans, 1.0f);
-        touched_.assign(beta.size(), 0);
-        for (const Column& c : layers.columns) bend_.push_back(c.bend);
+        beta_.resize(core_ + fans), marks_.resize(core_ + fans);
+        parallelFor(beta_.size(), [&](std::size_t n) { beta_[n] = 1, marks_[n] = 0; }, 8192);
+        bend_.resize(layers.columns.size());
+        parallelFor(bend_.size(), [&](std::size_t v) { bend_[v] = layers.columns[v].bend; }, 8192);
     }
     // Of a mesh point; the points of a layer belong to the fan.
     std::size_t of(std::int32_t point) const {
@@ -54,9 +57,11 @@ class Nodes {
     std::size_t frontOf(std::size_t node) const { return static_cast<std::size_t>(front_.corePoint[node - core_]); }
 
     void set(std::size_t n, float value) {
-        if (beta[n] == value) return;
-        beta[n] = value;
-        touched_[n] = 1;
+        if (beta_[n] == value) return;
+        beta_[n] = value;
+        if (!(marks_[n] & stepped)) stepped_.push_back(n);
+        if (!(marks_[n] & touched)) touched_.push_back(n);
+        marks_[n] = stepped | touched;
         // The wall's normals are those of the fit: at the start columns are straight.
         if (n >= core_ && !bend_.empty()) layers_.columns[n - core_].bend = bend_[n - core_] * value;
     }
@@ -64,29 +69,46 @@ class Nodes {
     std::vector<std::int32_t> place(RawVector<Vec3>& points);
     void store(Front& front) const;
 
-    std::vector<float> beta; // per node; to be changed by set()
+    float beta(std::size_t n) const { return beta_[n]; }
+    // How far those have gone that ever stepped back, in the order in which they first did. All others are at the end of their way.
+    std::vector<float> state() const {
+        std::vector<float> betas;
+        for (const std::size_t n : stepped_) betas.push_back(beta_[n]);
+        return betas;
+    }
+    void returnTo(const std::vector<float>& state) { // of before
+        for (std::size_t i = 0; i < stepped_.size(); ++i) set(stepped_[i], i < state.size() ? state[i] : 1.0f);
+    }
+    std::int64_t behind() const {
+        return std::count_if(stepped_.begin(), stepped_.end(), [&](std::size_t n) { return beta_[n] < 1; });
+    }
 
   private:
     // The front position of a fan now: inserted ones stay on the edge that they divide.
     Vec3 frontNow(std::size_t v) const {
-        if (v < ahead_.size()) return ahead_[v].at(beta[static_cast<std::size_t>(front_.corePoint[v])]);
+        if (v < ahead_.size()) return ahead_[v].at(beta_[static_cast<std::size_t>(front_.corePoint[v])]);
         const Front::Inserted& i = front_.inserted[v - ahead_.size()];
-        return i.frontAt(frontNow(static_cast<std::size_t>(i.ends[0])), frontNow(static_cast<std::size_t>(i.ends[1])), wall_[v].at(beta[core_ + v]));
+        return i.frontAt(frontNow(static_cast<std::size_t>(i.ends[0])), frontNow(static_cast<std::size_t>(i.ends[1])), wall_[v].at(beta_[core_ + v]));
     }
+    bool isTouched(std::size_t n) const { return (marks_[n] & touched) != 0; }
     bool frontTouched(std::size_t v) const {
-        if (v < ahead_.size()) return touched_[static_cast<std::size_t>(front_.corePoint[v])] != 0;
+        if (v < ahead_.size()) return isTouched(static_cast<std::size_t>(front_.corePoint[v]));
         const Front::Inserted& i = front_.inserted[v - ahead_.size()];
-        return touched_[core_ + v] != 0 || frontTouched(static_cast<std::size_t>(i.ends[0])) || frontTouched(static_cast<std::size_t>(i.ends[1]));
+        return isTouched(core_ + v) || frontTouched(static_cast<std::size_t>(i.ends[0])) || frontTouched(static_cast<std::size_t>(i.ends[1]));
     }
 
     const Front& front_;
+    const MeshNodes& meshNodes_;
     LayerStack& layers_;
     std::size_t core_;
     RawVector<Path> behind_;             // as front.movedPoints
     RawVector<Path> ahead_;              // per fan that the lattice has
     RawVector<Path> wall_;               // per fan
-    std::vector<float> bend_;              // per fan, of its column at the end of the fit; empty: all straight
-    std::vector<std::uint8_t> touched_;    // per node
+    RawVector<float> bend_;              // per fan, of its column at the end of the fit; empty: all straight
+    RawVector<float> beta_;              // per node
+    enum Mark : std::uint8_t { stepped = 1, touched = 2 }; // back ever; set since nodes were placed last
+    RawVector<std::uint8_t> marks_;      // per node
+    std::vector<std::size_t> stepped_, touched_;
 };
 
 std::vector<std::int32_t> Nodes::place(RawVector<Vec3>& points) {
@@ -95,27 +117,34 @@ std::vector<std::int32_t> Nodes::place(RawVector<Vec3>& points) {
         points[p] = to;
         moved.push_back(static_cast<std::int32_t>(p));
     };
-    for (std::size_t i = 0; i < behind_.size(); ++i) {
-        const auto p = static_cast<std::size_t>(front_.movedPoints[i]);
-        if (touched_[p]) put(p, behind_[i].at(beta[p]));
+    std::vector<std::size_t> fans; // that stand elsewhere now, or their front points
+    for (const std::size_t n : touched_) {
+        if (n >= core_) {
+            fans.push_back(n - core_);
+            continue;
+        }
+        if (const std::int32_t i = meshNodes_.movedPlace(static_cast<std::int32_t>(n)); i >= 0) put(n, behind_[static_cast<std::size_t>(i)].at(beta_[n]));
+        const auto [first, last] = meshNodes_.fansOf(static_cast<std::int32_t>(n));
+        fans.insert(fans.end(), first, last);
     }
-    for (std::size_t v = 0; v < wall_.size(); ++v) {
-        const auto p = static_cast<std::size_t>(front_.corePoint[v]);
-        const bool frontMoves = frontTouched(v);
-        if (frontMoves) put(p, frontNow(v));
-        if (!frontMoves && !touched_[core_ + v]) continue;
+    for (std::size_t v = ahead_.size(); v < wall_.size() && !touched_.empty(); ++v)
+        if (frontTouched(v)) fans.push_back(v);
+    sortUnique(fans);
+    for (const std::size_t v : fans) {
+        if (frontTouched(v)) put(static_cast<std::size_t>(front_.corePoint[v]), frontNow(v));
         const std::size_t first = core_ + layers_.pointOffset(v), n = static_cast<std::size_t>(layers_.pointsOf(v));
-        placeLayers(layers_, v, frontNow(v), wall_[v].at(beta[core_ + v]), &points[first]);
+        placeLayers(layers_, v, frontNow(v), wall_[v].at(beta_[core_ + v]), &points[first]);
         for (std::size_t k = 0; k < n; ++k) moved.push_back(static_cast<std::int32_t>(first + k));
     }
-    std::fill(touched_.begin(), touched_.end(), std::uint8_t(0));
+    for (const std::size_t n : touched_) marks_[n] = stepped;
+    touched_.clear();
     return moved;
 }
 
 void Nodes::store(Front& front) const {
-    parallelFor(behind_.size(), [&](std::size_t i) { front.movedTo[i] = behind_[i].at(beta[static_cast<std::size_t>(front.movedPoints[i])]); }, 2048);
+    parallelFor(behind_.size(), [&](std::size_t i) { front.movedTo[i] = behind_[i].at(beta_[static_cast<std::size_t>(front.movedPoints[i])]); }, 2048);
     parallelFor(wall_.size(), [&](std::size_t v) {
-        const Vec3 b = wall_[v].at(beta[core_ + v]);
+        const Vec3 b = wall_[v].at(beta_[core_ + v]);
         front.front[v] = frontNow(v);
         front.mesh.set_point(FrontMesh::VertexHandle(static_cast<int>(v)), {b.x, b.y, b.z});
     }, 2048);
@@ -125,13 +154,12 @@ void Nodes::store(Front& front) const {
 class Retreat {
   public:
     Retreat(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults, Nodes& nodes)
-        : mesh_(mesh), cellFaces_(cellFaces), faults_(faults), nodes_(nodes), visited_(static_cast<std::size_t>(mesh.cells), 0),
-          queued_(static_cast<std::size_t>(mesh.cells), 0) {}
+        : mesh_(mesh), cellFaces_(cellFaces), faults_(faults), nodes_(nodes), queued_(static_cast<std::size_t>(mesh.cells), 0) {}
 
     // The points of the cells step back, those around them follow, and the mesh is measured again there.
     void step(const std::vector<std::int32_t>& cells, float step);
     // All nodes to another state of before.
-    void restore(const std::vector<float>& beta);
+    void returnTo(const std::vector<float>& state);
 
   private:
     // f(node) for the nodes of a cell, with repeats.
@@ -151,7 +179,8 @@ class Retreat {
     const Rows& cellFaces_;
     MeshFaults& faults_;
     Nodes& nodes_;
-    std::vector<std::uint8_t> visited_, queued_; // per cell: in any step; in this one
+    std::vector<std::uint8_t> queued_; // per cell: in this step
+    std::vector<std::int32_t> visited_; // in any
 };
 
 // Bounds the difference of beta inside cells, starting from cells whose points have just stepped back. Gives all cells
@@ -162,8 +191,8 @@ std::vector<std::int32_t> Retreat::spread(std::vector<std::int32_t> cells) {
         std::vector<std::int32_t> next;
         for (std::int32_t c : cells) {
             float low = 1;
-            forNodes(c, [&](std::size_t n) { low = std::min(low, nodes_.beta[n]); });
-            forNodes(c, [&](std::size_t n) { nodes_.set(n, std::min(nodes_.beta[n], low + float(slope))); });
+            forNodes(c, [&](std::size_t n) { low = std::min(low, nodes_.beta(n)); });
+            forNodes(c, [&](std::size_t n) { nodes_.set(n, std::min(nodes_.beta(n), low + float(slope))); });
             for (std::int32_t f : cellFaces_[c]) {
                 if (f >= mesh_.internalFaces()) continue;
                 const auto i = static_cast<std::size_t>(f);
@@ -180,31 +209,27 @@ std::vector<std::int32_t> Retreat::spread(std::vector<std::int32_t> cells) {
 }
 
 void Retreat::step(const std::vector<std::int32_t>& cells, float step) {
-    std::vector<std::size_t> stepping; // each node steps back once
-    for (std::int32_t c : cells) forNodes(c, [&](std::size_t n) { stepping.push_back(n); });
-    std::sort(stepping.begin(), stepping.end());
+    RawVector<std::size_t> stepping = collect<std::size_t>(cells.size(), [&](std::size_t i, const auto& put) { forNodes(cells[i], put); }, 512);
+    tbb::parallel_sort(stepping); // each node steps back once
     stepping.erase(std::unique(stepping.begin(), stepping.end()), stepping.end());
-    for (std::size_t n : stepping) nodes_.set(n, std::max(0.0f, nodes_.beta[n] - step));
+    for (std::size_t n : stepping) nodes_.set(n, std::max(0.0f, nodes_.beta(n) - step));
     const std::vector<std::int32_t> seeds = spread(cells);
-    for (std::int32_t c : seeds) visited_[static_cast<std::size_t>(c)] = 1;
+    visited_.insert(visited_.end(), seeds.begin(), seeds.end());
     faults_.update(nodes_.place(mesh_.points), seeds);
 }
 
-void Retreat::restore(const std::vector<float>& beta) {
-    for (std::size_t n = 0; n < beta.size(); ++n) nodes_.set(n, beta[n]);
-    std::vector<std::int32_t> seeds;
-    for (std::size_t c = 0; c < visited_.size(); ++c) {
-        if (visited_[c]) seeds.push_back(static_cast<std::int32_t>(c));
-    }
-    faults_.update(nodes_.place(mesh_.points), seeds);
+void Retreat::returnTo(const std::vector<float>& state) {
+    nodes_.returnTo(state);
+    sortUnique(visited_);
+    faults_.update(nodes_.place(mesh_.points), visited_);
 }
 
 } // namespace
 
-RetreatSummary retreatFromFaults(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults, Front& front, const LatticeMesh& lattice, LayerStack& layers,
-                                 double startThickness, RetreatFrom from) {
+RetreatSummary retreatFromFaults(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults, Front& front, const MeshNodes& meshNodes, const LatticeMesh& lattice,
+                                 LayerStack& layers, double startThickness, RetreatFrom from) {
     RetreatSummary summary;
-    Nodes nodes(front, lattice, layers, startThickness);
+    Nodes nodes(front, meshNodes, lattice, layers, startThickness);
     Retreat retreat(mesh, cellFaces, faults, nodes);
     std::vector<std::int32_t> bad = faults.badCells();
     const auto makeValid = [&] {
@@ -216,10 +241,9 @@ RetreatSummary retreatFromFaults(PolyMesh& mesh, const Rows& cellFaces, MeshFaul
     makeValid();
     FaultCount least;
     faults.poorCells(least);
-    std::vector<float> best = nodes.beta;
+    std::vector<float> best = nodes.state();
     const auto returnToBest = [&] {
-        if (best == nodes.beta) return;
-        retreat.restore(best);
+        retreat.returnTo(best);
         bad = faults.badCells();
     };
     // The best state counts. Severe faults first: what mends them may leave layers thin beside a large cell, which is the
@@ -235,13 +259,13 @@ RetreatSummary retreatFromFaults(PolyMesh& mesh, const Rows& cellFaces, MeshFaul
             poor = faults.poorCells(count, severeOnly);
             if (!bad.empty() || !(count < least)) continue;
             least = count;
-            best = nodes.beta;
+            best = nodes.state();
         }
         returnToBest();
     }
     summary.wrongCells = std::move(bad);
     nodes.store(front);
-    for (const float beta : nodes.beta) summary.retracted += beta < 1;
+    summary.retracted = nodes.behind();
     return summary;
 }
 

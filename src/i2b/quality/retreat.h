@@ -3,6 +3,7 @@
 #pragma once
 #include "i2b/assemble/assemble.h"
 #include "i2b/quality/mesh_faults.h"
+#include "i2b/quality/mesh_nodes.h"
 #include <cstdint>
 #include <vector>
 
@@ -18,8 +19,8 @@ struct RetreatSummary {
 };
 
 // Steps back until nothing is wrong, then, if asked to, for quality as long as it helps. Moves points of mesh and front; columns
-// lose their bend with it. startThickness: what buildFront() was given. faults: of mesh; kept up to date.
-RetreatSummary retreatFromFaults(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults, Front& front, const LatticeMesh& lattice, LayerStack& layers,
-                                 double startThickness, RetreatFrom from);
+// lose their bend with it. startThickness: what buildFront() was given. faults and meshNodes: of mesh; the faults kept up to date.
+RetreatSummary retreatFromFaults(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults, Front& front, const MeshNodes& meshNodes, const LatticeMesh& lattice,
+                                 LayerStack& layers, double startThickness, RetreatFrom from);
 
 } // namespace i2b

@@ -4,6 +4,7 @@
 #include "i2b/core/parallel.h"
 #include <cstdint>
 #include <limits>
+#include <tbb/parallel_invoke.h>
 #include <vector>
 
 namespace i2b {
@@ -47,21 +48,31 @@ struct Extremes {
 };
 
 // Loops over [0, n) in blocks; body(begin, end, part) over the fixed chunks of a block in parallel, then
-// their parts join total in order, then afterBlock(begin, end) on one thread: there the values of a block are
-// summed one by one, since only a plain sum has the round-off of a plain sum.
+// their parts join total in order. afterBlock(begin, end) on one thread, block after block, while the others are at the next:
+// there the values of a block are summed one by one, since only a plain sum has the round-off of a plain sum.
 template <class Part, class Body, class AfterBlock>
 void orderedBlocks(std::size_t n, std::size_t block, Part& total, const Body& body,
                    const AfterBlock& afterBlock) {
     constexpr std::size_t chunk = 2048;
+    const auto endOf = [&](std::size_t begin) { return begin + block < n ? begin + block : n; };
     for (std::size_t begin = 0; begin < n; begin += block) {
-        const std::size_t end = begin + block < n ? begin + block : n;
+        const std::size_t end = endOf(begin);
         std::vector<Part> parts((end - begin + chunk - 1) / chunk);
-        parallelChunks(end - begin, chunk, [&](std::size_t b, std::size_t e, std::size_t c) {
-            body(begin + b, begin + e, parts[c]);
-        });
+        const LoopFence fence;
+        const auto beside = [&](const auto& work) {
+            fence.enter();
+            work();
+            fence.leave();
+        };
+        const auto measure = [&] {
+            parallelChunks(end - begin, chunk, [&](std::size_t b, std::size_t e, std::size_t c) { body(begin + b, begin + e, parts[c]); });
+        };
+        if (begin == 0) measure();
+        else tbb::parallel_invoke([&] { beside(measure); }, [&] { beside([&] { afterBlock(begin - block, begin); }); });
+        fence.join();
         for (const Part& part : parts) total.join(part);
-        afterBlock(begin, end);
     }
+    if (n > 0) afterBlock((n - 1) / block * block, n);
 }
 
 template <class Part, class Body>
