@@ -1,6 +1,7 @@
 #include "i2b/carve/extrudable.h"
 #include "i2b/grid/ranked_mask.h"
 #include <algorithm>
+#include <tbb/parallel_sort.h>
 #include <set>
 
 namespace i2b {
@@ -178,7 +179,7 @@ std::vector<Place> Shaper::collect(const std::vector<Place>& from, std::size_t c
 }
 
 std::vector<Place> Shaper::faulty(const std::vector<Place>& vertices) const {
-    return collect(vertices, 1024, [&](const Place& v, VertexLookup& lookup, std::vector<Place>& out) {
+    return collect(vertices, 128, [&](const Place& v, VertexLookup& lookup, std::vector<Place>& out) {
         if (faults(v, lookup, nullptr) > 0) out.push_back(v);
     });
 }
@@ -194,9 +195,9 @@ void Shaper::cellsAround(const Place& cell, VertexLookup& lookup, std::vector<Pl
 
 // Vertices that a change of these cells tells on: those around, and what their neighbours' edges see at the other end.
 std::vector<Place> Shaper::seeing(const std::vector<Place>& cells) const {
-    std::vector<Place> around = collect(cells, 16, [&](const Place& cell, VertexLookup& lookup, std::vector<Place>& out) { cellsAround(cell, lookup, out); });
+    std::vector<Place> around = collect(cells, 4, [&](const Place& cell, VertexLookup& lookup, std::vector<Place>& out) { cellsAround(cell, lookup, out); });
     sortUnique(around);
-    return collect(around, 64, [&](const Place& cell, VertexLookup& lookup, std::vector<Place>& out) {
+    return collect(around, 16, [&](const Place& cell, VertexLookup& lookup, std::vector<Place>& out) {
         const std::vector<Place> vertices = verticesOf({cell}, lookup, grid_);
         out.insert(out.end(), vertices.begin(), vertices.end());
     });
@@ -205,7 +206,7 @@ std::vector<Place> Shaper::seeing(const std::vector<Place>& cells) const {
 // Makes the best changes that do not look at each other's vertices: their gains add up. Gives the changed cells.
 std::vector<Place> Shaper::improve(const std::vector<Place>& bad) {
     std::vector<Toggle> toggles(bad.size());
-    parallelChunks(bad.size(), 16, [&](std::size_t begin, std::size_t end, std::size_t) {
+    parallelChunks(bad.size(), 4, [&](std::size_t begin, std::size_t end, std::size_t) {
         VertexLookup lookup(grid_, kept_);
         for (std::size_t i = begin; i < end; ++i) toggles[i] = bestToggle(bad[i], lookup);
     });
@@ -213,7 +214,7 @@ std::vector<Place> Shaper::improve(const std::vector<Place>& bad) {
     std::sort(toggles.begin(), toggles.end());
     struct Sight { std::vector<Place> own, near; }; // vertices of the cell, and those one edge further: faults look that far
     std::vector<Sight> sights(toggles.size());
-    parallelChunks(toggles.size(), 16, [&](std::size_t begin, std::size_t end, std::size_t) {
+    parallelChunks(toggles.size(), 4, [&](std::size_t begin, std::size_t end, std::size_t) {
         VertexLookup lookup(grid_, kept_);
         for (std::size_t i = begin; i < end; ++i) {
             std::vector<Place> around;
@@ -269,7 +270,7 @@ ShapingSummary Shaper::run() {
 } // namespace
 
 void sortUnique(std::vector<Place>& places) {
-    std::sort(places.begin(), places.end());
+    tbb::parallel_sort(places.begin(), places.end());
     places.erase(std::unique(places.begin(), places.end()), places.end());
 }
 

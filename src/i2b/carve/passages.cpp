@@ -1,5 +1,8 @@
 #include "i2b/carve/passages.h"
+#include "i2b/core/collect.h"
 #include <algorithm>
+#include <span>
+#include <tbb/parallel_sort.h>
 
 namespace i2b {
 namespace {
@@ -14,22 +17,21 @@ using Steps = std::vector<Step>; // in order of cells
 bool contains(const Steps& steps, const Place& c) { return std::binary_search(steps.begin(), steps.end(), Step{c, 0}); }
 
 // Candidates beside the last step that are new.
-std::vector<Place> besides(const Room& room, const Steps& last, const Steps& reached) {
-    std::vector<Place> places;
-    for (const Step& s : last) {
+RawVector<Place> besides(const Room& room, const Steps& last, const Steps& reached) {
+    RawVector<Place> places = collect<Place>(last.size(), [&](std::size_t i, const auto& put) {
         for (int d = 0; d < 6; ++d) {
-            const Place n = faceNeighbour(s.cell, d);
-            if (room.isCandidate(n) && !room.isKept(n) && !contains(reached, n)) places.push_back(n);
+            const Place n = faceNeighbour(last[i].cell, d);
+            if (room.isCandidate(n) && !room.isKept(n) && !contains(reached, n)) put(n);
         }
-    }
-    std::sort(places.begin(), places.end());
+    }, 256);
+    tbb::parallel_sort(places.begin(), places.end());
     places.erase(std::unique(places.begin(), places.end()), places.end());
     return places;
 }
 
 // Those of the places that have room and a way to them from a cell that from() takes.
 template <class From>
-Steps reachable(const Room& room, const std::vector<Place>& places, const From& from) {
+Steps reachable(const Room& room, std::span<const Place> places, const From& from) {
     Steps steps(places.size());
     parallelFor(
         places.size(),
@@ -72,10 +74,11 @@ std::vector<Place> withoutWallsBetween(const Room& room, const Steps& given) {
     return cells;
 }
 
+// Both in order, and of different cells.
 void append(Steps& to, const Steps& more) {
+    const auto before = static_cast<std::ptrdiff_t>(to.size());
     to.insert(to.end(), more.begin(), more.end());
-    std::sort(to.begin(), to.end());
-    to.erase(std::unique(to.begin(), to.end(), [](const Step& a, const Step& b) { return a.cell == b.cell; }), to.end());
+    std::inplace_merge(to.begin(), to.begin() + before, to.end());
 }
 
 } // namespace

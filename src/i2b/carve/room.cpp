@@ -3,6 +3,7 @@
 #include "i2b/grid/mask_ops.h"
 #include <algorithm>
 #include <cmath>
+#include <tbb/parallel_sort.h>
 
 namespace i2b {
 namespace {
@@ -139,7 +140,7 @@ std::vector<Place> besideKept(const Room& room) {
         }, 64);
         places.insert(places.end(), found.begin(), found.end());
     }
-    std::sort(places.begin(), places.end());
+    tbb::parallel_sort(places.begin(), places.end());
     return places;
 }
 

@@ -6,7 +6,9 @@
 namespace i2b {
 namespace {
 
-constexpr int blockBits = 6; // blocks of 64^3 cells, an eighth of a tree node of 128^3
+constexpr int blockBits = 5;              // blocks of 32^3 cells
+constexpr int inNodeBits = 7 - blockBits; // of a block's place along an axis of a tree node, of 128^3
+constexpr int inNode = (1 << inNodeBits) - 1;
 
 // Places in the coordinates of one level: cell edge 1.
 struct LevelFrame {
@@ -50,20 +52,22 @@ struct LevelTriangle {
 struct BlockEntry {
     BlockEntry() = default;
     BlockEntry(const Index3& block, std::uint32_t triangle)
-        : xy(std::uint64_t(block[0] >> 1) << 32 | std::uint64_t(block[1] >> 1)),
-          zbt(std::uint64_t(block[2] >> 1) << 35 | std::uint64_t((block[0] & 1) << 2 | (block[1] & 1) << 1 | (block[2] & 1)) << 32 | triangle) {}
+        : xy(std::uint64_t(block[0] >> inNodeBits) << 32 | std::uint64_t(block[1] >> inNodeBits)),
+          zbt(std::uint64_t(block[2] >> inNodeBits) << nodeFrom |
+              std::uint64_t((block[0] & inNode) << 2 * inNodeBits | (block[1] & inNode) << inNodeBits | (block[2] & inNode)) << 32 | triangle) {}
 
-    Index3 node() const { return {std::int32_t(xy >> 32), std::int32_t(xy & 0xffffffffu), std::int32_t(zbt >> 35)}; }
+    Index3 node() const { return {std::int32_t(xy >> 32), std::int32_t(xy & 0xffffffffu), std::int32_t(zbt >> nodeFrom)}; }
     Index3 block() const {
         const Index3 n = node();
-        const auto i = static_cast<std::int32_t>(zbt >> 32 & 7);
-        return {2 * n[0] + (i >> 2), 2 * n[1] + (i >> 1 & 1), 2 * n[2] + (i & 1)};
+        const auto i = static_cast<std::int32_t>(zbt >> 32);
+        return {n[0] << inNodeBits | (i >> 2 * inNodeBits & inNode), n[1] << inNodeBits | (i >> inNodeBits & inNode), n[2] << inNodeBits | (i & inNode)};
     }
     std::uint32_t triangle() const { return static_cast<std::uint32_t>(zbt); }
     bool sameBlock(const BlockEntry& o) const { return xy == o.xy && zbt >> 32 == o.zbt >> 32; }
-    bool sameNode(const BlockEntry& o) const { return xy == o.xy && zbt >> 35 == o.zbt >> 35; }
+    bool sameNode(const BlockEntry& o) const { return xy == o.xy && zbt >> nodeFrom == o.zbt >> nodeFrom; }
     friend bool operator<(const BlockEntry& a, const BlockEntry& b) { return a.xy != b.xy ? a.xy < b.xy : a.zbt < b.zbt; }
 
+    static constexpr int nodeFrom = 32 + 3 * inNodeBits;
     std::uint64_t xy = 0, zbt = 0; // node x, y; node z, block in the node, triangle
 };
 
@@ -122,7 +126,7 @@ std::vector<std::size_t> runsOf(const std::vector<BlockEntry>& entries, std::siz
     return begins;
 }
 
-// The cells of one block that its triangles meet: at most 512 leaves, found by place without any search.
+// The cells of one block that its triangles meet: at most 64 leaves, found by place without any search.
 class BlockCells {
   public:
     explicit BlockCells(const Index3& block) : origin_{block[0] << blockBits, block[1] << blockBits, block[2] << blockBits} {}
@@ -144,12 +148,16 @@ class BlockCells {
     void addTo(NodeBuilder& node) const {
         for (std::size_t i = 0; i < leaves_.size(); ++i) {
             const auto n = static_cast<std::int32_t>(i);
-            node.add({origin_[0] + 8 * (n >> 6), origin_[1] + 8 * (n >> 3 & 7), origin_[2] + 8 * (n & 7)}, leaves_[i]);
+            node.add({origin_[0] + 8 * (n >> 2 * leafAtBits), origin_[1] + 8 * (n >> leafAtBits & inBlock), origin_[2] + 8 * (n & inBlock)}, leaves_[i]);
         }
     }
 
   private:
-    LeafBits& leaf(const Index3& c) { return leaves_[static_cast<std::size_t>(bits::offset(c[0] >> 3, c[1] >> 3, c[2] >> 3))]; }
+    static constexpr int leafAtBits = blockBits - 3; // of a leaf's place along an axis of the block
+    static constexpr int inBlock = (1 << leafAtBits) - 1;
+    LeafBits& leaf(const Index3& c) {
+        return leaves_[static_cast<std::size_t>((c[0] >> 3 & inBlock) << 2 * leafAtBits | (c[1] >> 3 & inBlock) << leafAtBits | (c[2] >> 3 & inBlock))];
+    }
     void set(const Index3& c) { leaf(c)[static_cast<std::size_t>(c[0] & 7)] |= std::uint64_t(1) << (bits::offset(0, c[1], c[2])); }
     // One by one: sooner done than columns are set up.
     void addFew(const TriangleBoxTest& test, const Index3& lo, const Index3& hi) {
@@ -164,7 +172,7 @@ class BlockCells {
     }
 
     Index3 origin_;
-    std::vector<LeafBits> leaves_ = std::vector<LeafBits>(512);
+    std::vector<LeafBits> leaves_ = std::vector<LeafBits>(std::size_t(1) << 3 * leafAtBits);
 };
 
 // The cells of a level that any of the triangles meets. Blocks are filled and nodes are put together in parallel.

@@ -20,6 +20,7 @@
 #include "i2b/sizing/automatic.h"
 #include "i2b/sizing/estimate.h"
 #include <fmt/format.h>
+#include <tbb/task_group.h>
 
 namespace i2b {
 namespace {
@@ -86,6 +87,14 @@ void dropPlaces(std::vector<T>& values, const std::vector<std::int32_t>& places)
 void judge(MeshResult& out, const FeatureGraph& features, const FitSummary& fitted, const RepairSummary& repaired, const DictionaryLimits& limits,
            Context& context) {
     const SurfaceIndex& index = *out.cartesian->index;
+    Checksum sum;
+    const LoopFence fence;
+    tbb::task_group beside; // one thread's work
+    beside.run([&] {
+        fence.enter();
+        sum.add(out.mesh.checksum());
+        fence.leave();
+    });
     out.report.quality = stage(
         context, "quality", [&] { return measureQuality(out.mesh, {}, limits); },
         [](const QualityReport& q) { return q.cells; });
@@ -104,8 +113,8 @@ void judge(MeshResult& out, const FeatureGraph& features, const FitSummary& fitt
     out.report.faces = out.mesh.faces();
     out.report.points = static_cast<std::int64_t>(out.mesh.points.size());
     out.report.patches = out.mesh.patches;
-    Checksum sum;
-    sum.add(out.mesh.checksum());
+    beside.wait();
+    fence.join();
     out.report.checksum = sum.hex();
 }
 
