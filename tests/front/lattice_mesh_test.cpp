@@ -159,6 +159,49 @@ TEST_P(RandomMesh, CornersAreThePointsOfTheFaces) {
     EXPECT_GT(hanging, 100);
 }
 
+// Deep cells are those with 26 kept neighbours of their own level, and what is known of them at once are the faces that any other cell
+// has: three to higher numbers, of four points each.
+TEST_P(RandomMesh, DeepCellsHaveThreeUpperFaces) {
+    int deepOnes = 0, others = 0;
+    for (unsigned seed = 4 * GetParam(); seed < 4 * GetParam() + 4; ++seed) {
+        const CarvedAtRandom c(seed, {19, 18, 10}, 1 + static_cast<int>(seed % 2), 1, 0.002, seed % 4 > 1);
+        const LatticeMesh mesh(c.grid, c.kept);
+        LatticeMesh::Reader reader(mesh);
+        for (int level = 0; level < mesh.levels(); ++level) {
+            const RankedMask& cells = mesh.cells(level);
+            for (std::size_t node = 0; node < cells.leafCount(); ++node) {
+                const LeafBits deep = reader.deepCells(level, node);
+                const Index3 o = toIndex(cells.leaf(node).origin());
+                std::int64_t rank = cells.leafFirst(node);
+                bits::forEach(leafBits(&cells.leaf(node)), [&](int x, int y, int z) {
+                    const Index3 at{o[0] + x, o[1] + y, o[2] + z};
+                    int kept = 0;
+                    for (int i = 0; i < 27; ++i) kept += reader.cell(level, {at[0] + i % 3 - 1, at[1] + i / 3 % 3 - 1, at[2] + i / 9 - 1}) >= 0;
+                    const bool isDeep = bits::test(deep, bits::offset(x, y, z));
+                    EXPECT_EQ(isDeep, kept == 27) << "seed " << seed << ", cell " << rank;
+                    (isDeep ? deepOnes : others) += 1;
+                    if (isDeep) {
+                        using Face = std::pair<std::int64_t, std::vector<std::int32_t>>;
+                        std::vector<Face> expected, found;
+                        reader.faces(level, at, [&](const CellFace& f) {
+                            EXPECT_EQ(f.kind, FaceKind::internal) << "seed " << seed << ", cell " << rank;
+                            expected.emplace_back(f.other, std::vector<std::int32_t>(f.points.begin(), f.points.begin() + f.vertices));
+                        }, rank);
+                        std::sort(expected.begin(), expected.end());
+                        reader.upperFaces(level, at, [&](std::int32_t other, const std::array<std::int32_t, 4>& points) {
+                            found.emplace_back(other, std::vector<std::int32_t>(points.begin(), points.end()));
+                        });
+                        EXPECT_EQ(found, expected) << "seed " << seed << ", cell " << rank;
+                    }
+                    ++rank;
+                });
+            }
+        }
+    }
+    EXPECT_GT(deepOnes, 500);
+    EXPECT_GT(others, 500);
+}
+
 // Base cells of 2^n grids, each split along axes of its own choice: bit a of splits[i] splits base cell i along axis a.
 CellGrid splitByHand(const Index3& count, const std::vector<unsigned>& splits) {
     CellGrid grid;

@@ -32,7 +32,7 @@ TEST_P(ShakenBlocks, HaveFewerFacesBeyondTheLimits) {
     const QualityReport old = measureQuality(before);
     ASSERT_GT(old.dictionaryFaces, 10);
     PolyMesh mesh = before;
-    const LastResort done = changePoorPlaces(mesh, poorFaces(mesh), {});
+    const LastResort done = changePoorPlaces(mesh, buildCellFaces(mesh), poorFaces(mesh), {});
     EXPECT_EQ(mesh.validate(), "");
     EXPECT_EQ(mesh.points, before.points);
     EXPECT_EQ(mesh.cells, before.cells - done.changes.merged);
@@ -105,7 +105,7 @@ TEST(LastResort, LeavesGoodMeshesAlone) {
     PolyMesh mesh = before;
     std::vector<std::int32_t> all(Index(mesh.faces()));
     std::iota(all.begin(), all.end(), 0);
-    const LastResort done = changePoorPlaces(mesh, all, {});
+    const LastResort done = changePoorPlaces(mesh, buildCellFaces(mesh), all, {});
     EXPECT_EQ(done.changes.merged + done.changes.divided, 0);
     EXPECT_TRUE(done.cellOf.empty());
     EXPECT_EQ(mesh.checksum(), before.checksum());
@@ -116,7 +116,7 @@ TEST(LastResort, LooksForNoConcaveFacesUnasked) {
     PolyMesh mesh = shaken(5);
     DictionaryLimits limits;
     limits.concavity = 180;
-    const LastResort done = changePoorPlaces(mesh, {}, limits);
+    const LastResort done = changePoorPlaces(mesh, buildCellFaces(mesh), {}, limits);
     EXPECT_EQ(done.changes.merged + done.changes.divided, 0);
     EXPECT_EQ(mesh.checksum(), shaken(5).checksum());
 }
@@ -138,7 +138,7 @@ TEST(LastResort, UnitesLayersOfOneColumnOnly) {
         if (own < 0) own = c;
         for (const std::int32_t next : layersUnder[static_cast<std::size_t>(c)]) column[static_cast<std::size_t>(next)] = own;
     }
-    const LastResort done = changePoorPlaces(mesh, poor, {}, 0);
+    const LastResort done = changePoorPlaces(mesh, buildCellFaces(mesh), poor, {}, 0);
     ASSERT_GT(done.changes.merged, 0);
     EXPECT_EQ(mesh.validate(), "");
     std::vector<std::int32_t> columnNow(static_cast<std::size_t>(mesh.cells), -1);
@@ -152,7 +152,7 @@ TEST(LastResort, UnitesLayersOfOneColumnOnly) {
 TEST(LastResort, UnitesNoRegions) {
     PolyMesh mesh = shaken(2);
     for (std::int32_t c = 0; c < mesh.cells; ++c) mesh.cellRegion.push_back(c);
-    EXPECT_EQ(changePoorPlaces(mesh, poorFaces(mesh), {}).changes.merged, 0);
+    EXPECT_EQ(changePoorPlaces(mesh, buildCellFaces(mesh), poorFaces(mesh), {}).changes.merged, 0);
 }
 
 TEST(LastResort, SameOnAnyNumberOfThreads) {
@@ -160,7 +160,7 @@ TEST(LastResort, SameOnAnyNumberOfThreads) {
     for (const std::size_t threads : {1u, 2u, 3u}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
         PolyMesh mesh = shaken(5);
-        EXPECT_GT(changePoorPlaces(mesh, poorFaces(mesh), {}).changes.merged, 0);
+        EXPECT_GT(changePoorPlaces(mesh, buildCellFaces(mesh), poorFaces(mesh), {}).changes.merged, 0);
         if (threads == 1) sum = mesh.checksum();
         EXPECT_EQ(mesh.checksum(), sum) << threads << " threads";
     }

@@ -19,8 +19,21 @@ struct Counts {
     std::array<std::int64_t, 7> faces{}, vertices{}; // 0: internal, 1 + side
 };
 
+// Counts faces. Cells far from all others than those of their own size are counted by the bit (LatticeMesh::Reader::deepCells()).
+struct Counter {
+    static constexpr bool counts = true;
+    Counts& sum;
+
+    void add(std::size_t kind, std::int32_t, std::int32_t, std::span<const std::int32_t> points) {
+        ++sum.faces[kind];
+        sum.vertices[kind] += static_cast<std::int64_t>(points.size());
+    }
+    void addDeep(std::int64_t cells) { sum.faces[0] += 3 * cells, sum.vertices[0] += 12 * cells; }
+};
+
 // Where the next face of each kind goes.
 struct Cursor {
+    static constexpr bool counts = false;
     Counts at;
     PolyMesh* mesh = nullptr;
 
@@ -78,10 +91,10 @@ class Assembler {
         const int points = in_.layers.pointsOf(v);
         return level == points ? in_.front.corePoint[v] : corePoints_ + static_cast<std::int32_t>(in_.layers.pointOffset(v)) + points - 1 - level;
     }
-    template <class Emit>
-    void coreFaces(int level, std::size_t node, LatticeMesh::Reader& reader, const Emit& emit) const;
-    template <class Emit>
-    void prismFaces(std::size_t face, Scratch& scratch, const Emit& emit) const;
+    template <class Sink>
+    void coreFaces(int level, std::size_t node, LatticeMesh::Reader& reader, Sink& sink) const;
+    template <class Sink>
+    void prismFaces(std::size_t face, Scratch& scratch, Sink& sink) const;
     void addPieces(std::size_t face, int k, const PrismSide& side, std::vector<SidePiece>& out) const;
     void sidePolygon(const SidePiece& piece, int cells, std::vector<std::int32_t>& out) const;
     void polygon(std::size_t face, int level, Pending& p) const;
@@ -97,8 +110,8 @@ class Assembler {
         std::size_t begin = 0, end = 0;
         Counts counts;
     };
-    template <class Emit>
-    void chunkFaces(const Chunk& chunk, const Emit& emit) const;
+    template <class Sink>
+    void chunkFaces(const Chunk& chunk, Sink& sink) const;
 
     const AssembleInput& in_;
     std::int32_t coreCells_, corePoints_;
@@ -121,23 +134,33 @@ int Assembler::sideOf(int u, int w) const {
     return std::countr_zero(static_cast<unsigned>(common));
 }
 
-// emit(kind, owner, neighbour, points) for every face that a node's cells own.
-template <class Emit>
-void Assembler::coreFaces(int level, std::size_t node, LatticeMesh::Reader& reader, const Emit& emit) const {
+// Every face that a node's cells own, cell by cell.
+template <class Sink>
+void Assembler::coreFaces(int level, std::size_t node, LatticeMesh::Reader& reader, Sink& sink) const {
     const RankedMask& cells = in_.lattice.cells(level);
     const Index3 o = toIndex(cells.leaf(node).origin());
     auto rank = static_cast<std::int32_t>(cells.leafFirst(node));
     std::vector<Pending> pending;
     auto next = static_cast<std::size_t>(
         std::lower_bound(in_.front.ownerCell.begin(), in_.front.ownerCell.end(), rank) - in_.front.ownerCell.begin());
+    const LeafBits deep = reader.deepCells(level, node);
+    if constexpr (Sink::counts) sink.addDeep(bits::count(deep));
     bits::forEach(leafBits(&cells.leaf(node)), [&](int x, int y, int z) {
+        if (bits::test(deep, bits::offset(x, y, z))) {
+            if constexpr (!Sink::counts) {
+                reader.upperFaces(level, {o[0] + x, o[1] + y, o[2] + z},
+                                  [&](std::int32_t other, const std::array<std::int32_t, 4>& points) { sink.add(0, rank, other, points); });
+            }
+            ++rank;
+            return;
+        }
         pending.clear();
         const auto take = [&](const CellFace& face) {
             Pending p;
             p.n = face.vertices;
             std::copy_n(face.points.begin(), p.n, p.points.begin());
             if (face.kind != FaceKind::front) p.n = static_cast<std::uint8_t>(divided_.addTo(p.points, p.n));
-            if (face.kind == FaceKind::side) return emit(std::size_t(1) + face.side, rank, 0, p.span());
+            if (face.kind == FaceKind::side) return sink.add(std::size_t(1) + face.side, rank, 0, p.span());
             if (face.kind == FaceKind::internal) {
                 p.neighbour = static_cast<std::int32_t>(face.other);
                 pending.push_back(p);
@@ -151,7 +174,7 @@ void Assembler::coreFaces(int level, std::size_t node, LatticeMesh::Reader& read
         };
         reader.faces(level, {o[0] + x, o[1] + y, o[2] + z}, take, rank);
         std::sort(pending.begin(), pending.end(), [](const Pending& a, const Pending& b) { return a.neighbour < b.neighbour; });
-        for (const Pending& p : pending) emit(std::size_t(0), rank, p.neighbour, p.span());
+        for (const Pending& p : pending) sink.add(0, rank, p.neighbour, p.span());
         ++rank;
     });
 }
@@ -182,8 +205,8 @@ void Assembler::sidePolygon(const SidePiece& piece, int cells, std::vector<std::
     for (int level = piece.below; level < topU; ++level) out.push_back(layerPoint(u, level));
 }
 
-template <class Emit>
-void Assembler::prismFaces(std::size_t face, Scratch& scratch, const Emit& emit) const {
+template <class Sink>
+void Assembler::prismFaces(std::size_t face, Scratch& scratch, Sink& sink) const {
     auto& [sides, pieces, points] = scratch;
     sides.clear();
     const FrontMesh& mesh = in_.front.mesh;
@@ -199,7 +222,7 @@ void Assembler::prismFaces(std::size_t face, Scratch& scratch, const Emit& emit)
         if (k + 1 < cells) {
             Pending p;
             polygon(face, cells - 1 - k, p);
-            emit(std::size_t(0), owner, owner + 1, p.span());
+            sink.add(0, owner, owner + 1, p.span());
         }
         pieces.clear();
         for (const PrismSide& s : sides) {
@@ -209,20 +232,20 @@ void Assembler::prismFaces(std::size_t face, Scratch& scratch, const Emit& emit)
         for (const SidePiece& piece : pieces) {
             const PrismSide& s = *piece.side;
             sidePolygon(piece, s.other < 0 ? cells : std::max(cells, in_.layers.cellsOf(static_cast<std::size_t>(s.other))), points);
-            emit(s.other < 0 ? static_cast<std::size_t>(1 + sideOf(s.u, s.w)) : std::size_t(0), owner, piece.neighbour, std::span<const std::int32_t>(points));
+            sink.add(s.other < 0 ? static_cast<std::size_t>(1 + sideOf(s.u, s.w)) : std::size_t(0), owner, piece.neighbour, points);
         }
     }
 }
 
-template <class Emit>
-void Assembler::chunkFaces(const Chunk& chunk, const Emit& emit) const {
+template <class Sink>
+void Assembler::chunkFaces(const Chunk& chunk, Sink& sink) const {
     if (chunk.level < 0) {
         Scratch scratch;
-        for (std::size_t f = chunk.begin; f < chunk.end; ++f) prismFaces(f, scratch, emit);
+        for (std::size_t f = chunk.begin; f < chunk.end; ++f) prismFaces(f, scratch, sink);
         return;
     }
     LatticeMesh::Reader reader(in_.lattice);
-    for (std::size_t node = chunk.begin; node < chunk.end; ++node) coreFaces(chunk.level, node, reader, emit);
+    for (std::size_t node = chunk.begin; node < chunk.end; ++node) coreFaces(chunk.level, node, reader, sink);
 }
 
 // Counts per chunk, then turns them into starting places: internal faces of all chunks, then side by side.
@@ -232,11 +255,8 @@ void Assembler::layOut(PolyMesh& mesh) {
     }
     for (std::size_t b = 0; b < frontFaces_; b += 2048) chunks_.push_back({-1, b, std::min(frontFaces_, b + 2048), {}});
     parallelFor(chunks_.size(), [&](std::size_t c) {
-        Counts& counts = chunks_[c].counts;
-        chunkFaces(chunks_[c], [&](std::size_t kind, std::int32_t, std::int32_t, std::span<const std::int32_t> points) {
-            ++counts.faces[kind];
-            counts.vertices[kind] += static_cast<std::int64_t>(points.size());
-        });
+        Counter counter{chunks_[c].counts};
+        chunkFaces(chunks_[c], counter);
     }, 1);
     std::int64_t faces = 0, vertices = 0;
     for (std::size_t kind = 0; kind < 7; ++kind) {
@@ -272,9 +292,7 @@ void Assembler::fill(PolyMesh& mesh) {
         chunks_.size(),
         [&](std::size_t c) {
             Cursor cursor{chunks_[c].counts, &mesh};
-            chunkFaces(chunks_[c], [&](std::size_t kind, std::int32_t owner, std::int32_t neighbour, std::span<const std::int32_t> points) {
-                cursor.add(kind, owner, neighbour, points);
-            });
+            chunkFaces(chunks_[c], cursor);
         },
         1);
 }

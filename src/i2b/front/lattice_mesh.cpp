@@ -236,6 +236,39 @@ bool LatticeMesh::Reader::corners(int level, const Index3& c, std::array<std::in
     return true;
 }
 
+// The cells of nodes that have cells on both sides along an axis, too.
+LeafBits LatticeMesh::Reader::deepCells(int level, std::size_t node) {
+    const RankedMask& cells = mesh_.cells(level);
+    const Index3 o = toIndex(cells.leaf(node).origin());
+    const auto bitsAt = [&](int dx, int dy, int dz) {
+        const Index3 at{o[0] + 8 * dx, o[1] + 8 * dy, o[2] + 8 * dz};
+        const std::int32_t leaf = std::min({at[0], at[1], at[2]}) < 0 ? -1 : kept_[static_cast<std::size_t>(level)].leafIndex(at);
+        return leaf < 0 ? LeafBits{} : leafBits(&cells.leaf(static_cast<std::size_t>(leaf)));
+    };
+    const auto eroded = [](const LeafBits& before, const LeafBits& own, const LeafBits& next, int axis) {
+        const LeafBits up = bits::neighbourUp(own, next, axis), down = bits::neighbourDown(own, before, axis);
+        LeafBits both{};
+        for (std::size_t x = 0; x < 8; ++x) both[x] = own[x] & up[x] & down[x];
+        return both;
+    };
+    const auto alongZ = [&](int dx, int dy) { return eroded(bitsAt(dx, dy, -1), bitsAt(dx, dy, 0), bitsAt(dx, dy, 1), 2); };
+    const auto alongYZ = [&](int dx) { return eroded(alongZ(dx, -1), alongZ(dx, 0), alongZ(dx, 1), 1); };
+    return eroded(alongYZ(-1), alongYZ(0), alongYZ(1), 0);
+}
+
+void LatticeMesh::Reader::lookUp(int level, const Index3& c, std::array<Upper, 3>& upper) {
+    enter(level, c);
+    std::array<std::int32_t, 8> point{}; // by bits x, y, z
+    for (int k = 1; k < 8; ++k) point[static_cast<std::size_t>(k)] = spotAt(level, {4 * (c[0] + (k & 1)), 4 * (c[1] + (k >> 1 & 1)), 4 * (c[2] + (k >> 2))}).point;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t own = std::size_t(1) << axis, b = std::size_t(1) << (axis + 1) % 3, d = std::size_t(1) << (axis + 2) % 3;
+        Index3 n = c;
+        ++n[axis];
+        upper[axis] = {static_cast<std::int32_t>(cell(level, n)), {point[own], point[own | b], point[own | b | d], point[own | d]}};
+    }
+    std::ranges::sort(upper, {}, &Upper::other);
+}
+
 void LatticeMesh::Reader::addVertex(CellFace& face, int level, const Piece& piece, const Index3& at) {
     const Spot spot = spotAt(level, at);
     if (spot.point < 0) return; // no vertex on the middle of this edge

@@ -75,6 +75,16 @@ class LatticeMesh {
         // The points at the corners of a kept cell that has no others, by bits x, y, z (1: the upper end); false where finer cells
         // may have put points on its edges and faces.
         bool corners(int level, const Index3& c, std::array<std::int32_t, 8>& points);
+        // The cells of a node whose 26 neighbours are all kept cells of their own level. Their faces have four vertices each, none on
+        // the front, and an internal face to the next cell of each axis has a cell of a higher number beyond it.
+        LeafBits deepCells(int level, std::size_t node);
+        // visit(number of the cell beyond, points) for the upper faces of such a cell, with ascending numbers; polygons as of faces().
+        template <class Visit>
+        void upperFaces(int level, const Index3& c, const Visit& visit) {
+            std::array<Upper, 3> upper;
+            lookUp(level, c, upper);
+            for (const Upper& face : upper) visit(face.other, face.points);
+        }
         std::int64_t cell(int level, const Index3& c) { return kept_[std::size_t(level)].rank(c); }
         // Kept cells around a point (of its own level): calls visit(level, cell) up to eight times, with repeats.
         template <class Visit>
@@ -90,6 +100,11 @@ class LatticeMesh {
             Index3 low{}, high{}; // equal along axis
             int axis = 0, side = 0;
         };
+        struct Upper {
+            std::int32_t other = 0;
+            std::array<std::int32_t, 4> points{};
+        };
+        void lookUp(int level, const Index3& c, std::array<Upper, 3>& upper);
         int neighbours(int level, const Index3& c, int direction); // fills found_
         int piecesAcross(int level, const Index3& c, std::size_t axis, int side);
         bool hasCell(int level, const Index3& c) { return cells_[static_cast<std::size_t>(level)].isValueOn(toCoord(c)); }

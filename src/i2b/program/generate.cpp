@@ -190,10 +190,11 @@ MeshResult generate(const Options& options, Context& context) {
     const LastResort changed = stage(
         context, "last resort",
         [&] {
-            lastMoves = moveLastPoints(out.mesh, walls.repaired.unmended, reached, thinFrom);
-            return changePoorPlaces(out.mesh, walls.repaired.unmended, reached, thinFrom);
+            lastMoves = moveLastPoints(out.mesh, walls.repaired.cellFaces, walls.repaired.unmended, reached, thinFrom);
+            return changePoorPlaces(out.mesh, walls.repaired.cellFaces, walls.repaired.unmended, reached, thinFrom);
         },
         [&](const LastResort& l) { return l.changes.merged + l.changes.divided + lastMoves; });
+    walls.repaired.cellFaces = {}; // faces are others now
     auto firstLayerCell = static_cast<std::int32_t>(lattice->cellCount());
     if (!changed.cellOf.empty()) firstLayerCell = 1 + *std::max_element(changed.cellOf.begin(), changed.cellOf.begin() + firstLayerCell);
     const ClosedRims rims = stage(

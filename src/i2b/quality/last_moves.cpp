@@ -42,9 +42,8 @@ RimZip placeAround(const PolyMesh& mesh, const Rows& cellFaces, const RimStar& s
 
 } // namespace
 
-std::int64_t moveLastPoints(PolyMesh& mesh, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits, std::int32_t thinFrom) {
+std::int64_t moveLastPoints(PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits, std::int32_t thinFrom) {
     if (poorFaces.empty()) return 0;
-    const Rows cellFaces = buildCellFaces(mesh);
     const std::vector<std::int32_t> faces = facesBeyondHelp(mesh, cellFaces, poorFaces, limits, thinFrom);
     if (faces.empty() || faces.size() > most) return 0;
     RimStar star(mesh, cellFaces);

@@ -132,7 +132,7 @@ std::vector<std::int32_t> facesBeyondHelp(const PolyMesh& mesh, const Rows& cell
     return facesLeft(mesh, poorFaces, limits, edits);
 }
 
-LastResort changePoorPlaces(PolyMesh& mesh, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits, std::int32_t thinFrom) {
+LastResort changePoorPlaces(PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits, std::int32_t thinFrom) {
     LastResort summary;
     std::vector<std::int32_t> faces, concave;
     // MeshFaults names those that the default limit forbids, but for thin cells that have many.
@@ -141,7 +141,6 @@ LastResort changePoorPlaces(PolyMesh& mesh, const std::vector<std::int32_t>& poo
     std::ranges::set_union(poorFaces, concave, std::back_inserter(faces));
     const bool flatAsked = thinFrom < mesh.cells && DictionaryBounds(limits).determinant > 0;
     if (faces.empty() && !flatAsked) return summary;
-    const Rows cellFaces = buildCellFaces(mesh);
     if (flatAsked) {
         const std::vector<std::int32_t> poor = std::move(faces);
         faces.clear();

@@ -84,7 +84,8 @@ void mendFlatCells(const PolyMesh& mesh, const Rows& cellFaces, const MeshFaults
 RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, LayerStack& layers, double startThickness,
                      const WallGuide& guide, const DictionaryLimits& limits, bool mayThinLeave) {
     RepairSummary summary;
-    const Rows cellFaces = buildCellFaces(mesh);
+    summary.cellFaces = buildCellFaces(mesh);
+    const Rows& cellFaces = summary.cellFaces;
     // Nodes off the wall do not mend thin layers: it takes whole columns.
     const bool thin = layers.areThin();
     const std::int32_t thinFrom = !layers.areFlat() ? mesh.cells : mesh.cells - static_cast<std::int32_t>(layers.cells());

@@ -25,6 +25,7 @@ struct RepairSummary {
     std::int64_t poorRemaining = 0;
     std::vector<std::int32_t> foldedCells; // thin ones with a face that does not divide, ascending
     std::vector<std::int32_t> unmended;    // faces with any fault at the end, and those of cells with one
+    Rows cellFaces;                       // of the mesh, whose points alone have changed
     std::vector<std::uint8_t> movedWalls; // per vertex of the front: its wall position was changed
 };
 
