@@ -43,6 +43,25 @@ TEST(Parallel, OrderedReduceIsTheSameOnAnyNumberOfThreads) {
     for (double r : results) EXPECT_EQ(r, results.front());
 }
 
+// Truth values of chunks side by side do not share memory: none is lost, however many threads write at once.
+TEST(Parallel, OrderedReduceKeepsEveryTruthValue) {
+    tbb::global_control control(tbb::global_control::max_allowed_parallelism, 8);
+    constexpr std::size_t chunks = 4096;
+    for (int round = 0; round < 20; ++round) {
+        std::size_t at = 0, wrong = 0;
+        const auto isOdd = [](std::size_t chunk) { return (chunk * 2654435761u >> 7 & 1) != 0; };
+        orderedReduce(
+            chunks, false, [&](std::size_t begin, std::size_t) { return isOdd(begin); },
+            [&](bool, bool value) {
+                wrong += value != isOdd(at++);
+                return value;
+            },
+            1);
+        ASSERT_EQ(at, chunks);
+        ASSERT_EQ(wrong, 0u) << "round " << round;
+    }
+}
+
 TEST(Parallel, ExclusiveScanTurnsCountsIntoOffsets) {
     std::vector<int> counts{3, 0, 2};
     EXPECT_EQ(exclusiveScan(counts), 5);

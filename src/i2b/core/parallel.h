@@ -70,10 +70,11 @@ void parallelChunks(std::size_t n, std::size_t size, const Body& body) {
 // floating-point result on any number of threads.
 template <class T, class Body, class Join>
 T orderedReduce(std::size_t n, T init, const Body& body, const Join& join, std::size_t size = 4096) {
-    std::vector<T> parts((n + size - 1) / size, init);
-    parallelChunks(n, size, [&](std::size_t begin, std::size_t end, std::size_t c) { parts[c] = body(begin, end); });
+    struct Part { T value; }; // of truth values, too, each in memory of its own
+    std::vector<Part> parts((n + size - 1) / size, Part{init});
+    parallelChunks(n, size, [&](std::size_t begin, std::size_t end, std::size_t c) { parts[c].value = body(begin, end); });
     T result = init;
-    for (const T& part : parts) result = join(result, part);
+    for (const Part& part : parts) result = join(result, part.value);
     return result;
 }
 

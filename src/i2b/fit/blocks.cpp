@@ -146,6 +146,7 @@ void NodeBlocks::sweep(std::span<const Kind> kinds, const Work& work) const {
     const LoopFence fence;
     tbb::parallel_for_each(first.begin(), first.end(), [&](const Turn& turn, tbb::feeder<Turn>& feeder) {
         fence.enter();
+        waits[turn.step * blocks + turn.block].load(std::memory_order_acquire); // whoever works on it sees what those before have done
         work(turn.block, kinds[turn.step]);
         const auto countDown = [&](std::uint32_t block, std::size_t step) {
             if (step < kinds.size() && waits[step * blocks + block].fetch_sub(1, std::memory_order_acq_rel) == 1) feeder.add({block, static_cast<std::uint32_t>(step)});
