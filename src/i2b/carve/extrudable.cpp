@@ -1,8 +1,8 @@
 #include "i2b/carve/extrudable.h"
 #include "i2b/grid/ranked_mask.h"
 #include <algorithm>
-#include <tbb/parallel_sort.h>
 #include <set>
+#include <tbb/parallel_sort.h>
 
 namespace i2b {
 namespace {

@@ -131,6 +131,7 @@ void NodeBlocks::colour(const Band& band) {
 // A turn is a block at one of the kinds. It comes after the turns of its earlier neighbours at that kind, and of its later ones and
 // itself at the kind before: each of these counts it down when done, and the last one starts it.
 void NodeBlocks::sweep(std::span<const Kind> kinds, const Work& work) const {
+    if (kinds.empty()) return;
     struct Turn { std::uint32_t block, step; };
     const std::size_t blocks = size();
     std::vector<std::atomic<std::uint32_t>> waits(kinds.size() * blocks);
@@ -139,10 +140,8 @@ void NodeBlocks::sweep(std::span<const Kind> kinds, const Work& work) const {
         for (std::size_t b = 0; b < blocks; ++b)
             waits[step * blocks + b].store(static_cast<std::uint32_t>(beside_[b].earlier.size() + (step > 0 ? 1 + beside_[b].later.size() : 0)), std::memory_order_relaxed);
     }
-    for (const std::vector<std::uint32_t>& colour : colours_) // the first colour and any other without neighbours before
-        for (const std::uint32_t b : colour)
-            if (beside_[b].earlier.empty()) first.push_back({b, 0});
-    if (kinds.empty()) return;
+    for (std::size_t b = 0; b < blocks; ++b)
+        if (beside_[b].earlier.empty()) first.push_back({static_cast<std::uint32_t>(b), 0});
     const LoopFence fence;
     tbb::parallel_for_each(first.begin(), first.end(), [&](const Turn& turn, tbb::feeder<Turn>& feeder) {
         fence.enter();

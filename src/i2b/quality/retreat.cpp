@@ -220,8 +220,10 @@ void Retreat::step(const std::vector<std::int32_t>& cells, float step) {
 
 void Retreat::returnTo(const std::vector<float>& state) {
     nodes_.returnTo(state);
+    const std::vector<std::int32_t> moved = nodes_.place(mesh_.points);
+    if (moved.empty()) return; // it is that state already
     sortUnique(visited_);
-    faults_.update(nodes_.place(mesh_.points), visited_);
+    faults_.update(moved, visited_);
 }
 
 } // namespace

@@ -54,9 +54,8 @@ template <class Part, class Body, class AfterBlock>
 void orderedBlocks(std::size_t n, std::size_t block, Part& total, const Body& body,
                    const AfterBlock& afterBlock) {
     constexpr std::size_t chunk = 2048;
-    const auto endOf = [&](std::size_t begin) { return begin + block < n ? begin + block : n; };
     for (std::size_t begin = 0; begin < n; begin += block) {
-        const std::size_t end = endOf(begin);
+        const std::size_t end = begin + block < n ? begin + block : n;
         std::vector<Part> parts((end - begin + chunk - 1) / chunk);
         const LoopFence fence;
         const auto beside = [&](const auto& work) {
