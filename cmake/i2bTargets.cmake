@@ -23,8 +23,33 @@ function(i2b_stage name)
   set_property(GLOBAL APPEND PROPERTY I2B_STAGES i2b_${name})
 endfunction()
 
+# The precompiled OpenVDB header for a program, or another precompiled header that has it.
+function(i2b_program_uses_vdb target)
+  set(header i2b_vdb_pch ${ARGN})
+  list(GET header -1 header)
+  target_link_libraries(${target} PRIVATE OpenVDB::openvdb)
+  # GCC takes a precompiled header only with the code model it was made with: the stages' -fPIC, not the -fPIE
+  # that CMake gives programs.
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+  target_compile_options(${target} PRIVATE -fPIC)
+  target_precompile_headers(${target} REUSE_FROM ${header})
+endfunction()
+
+# The precompiled headers of tests: GoogleTest's, and these with OpenVDB's.
+function(i2b_add_test_headers)
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/pch/test_pch.cpp CONTENT "#include <gmock/gmock.h>\n#include <gtest/gtest.h>\n")
+  foreach(header i2b_test_pch i2b_vdb_test_pch)
+    add_library(${header} OBJECT ${PROJECT_BINARY_DIR}/pch/test_pch.cpp)
+    target_include_directories(${header} PUBLIC ${PROJECT_SOURCE_DIR}/src)
+    target_link_libraries(${header} PRIVATE i2b_settings PUBLIC TBB::tbb fmt::fmt GTest::gmock GTest::gtest)
+  endforeach()
+  target_precompile_headers(i2b_test_pch PRIVATE <gmock/gmock.h> <gtest/gtest.h>)
+  target_link_libraries(i2b_vdb_test_pch PUBLIC OpenVDB::openvdb)
+  target_precompile_headers(i2b_vdb_test_pch PRIVATE ${PROJECT_SOURCE_DIR}/src/i2b/grid/vdb.h <gmock/gmock.h> <gtest/gtest.h>)
+endfunction()
+
 # i2b_test(NAME STAGES ... [SOURCES ...] [LINK ...] [OPENVDB])
-#   tests/<name>/*.cpp against the objects of the named stages only. OpenVDB's headers stay cheap the same way.
+#   tests/<name>/*.cpp against the objects of the named stages only (and what tests share, i2b_test_helpers). Headers stay cheap the same way.
 function(i2b_test name)
   cmake_parse_arguments(arg "OPENVDB" "TIMEOUT" "SOURCES;STAGES;LINK" ${ARGN})
   if(NOT arg_TIMEOUT)
@@ -33,14 +58,13 @@ function(i2b_test name)
   list(TRANSFORM arg_STAGES PREPEND i2b_)
   add_executable(test_${name} ${arg_SOURCES})
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/tests)
-  target_link_libraries(test_${name} PRIVATE i2b_settings ${arg_STAGES} ${arg_LINK} GTest::gmock GTest::gtest_main)
+  target_link_libraries(test_${name} PRIVATE i2b_settings i2b_test_helpers ${arg_STAGES} ${arg_LINK} GTest::gmock GTest::gtest_main)
   if(arg_OPENVDB)
-    target_link_libraries(test_${name} PRIVATE OpenVDB::openvdb)
-    # GCC takes a precompiled header only with the code model it was made with: the stages' -fPIC, not the -fPIE
-    # that CMake gives programs.
+    i2b_program_uses_vdb(test_${name} i2b_vdb_test_pch)
+  else()
     set_target_properties(test_${name} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
     target_compile_options(test_${name} PRIVATE -fPIC)
-    target_precompile_headers(test_${name} REUSE_FROM i2b_vdb_pch)
+    target_precompile_headers(test_${name} REUSE_FROM i2b_test_pch)
   endif()
   gtest_discover_tests(test_${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT ${arg_TIMEOUT})
 endfunction()
