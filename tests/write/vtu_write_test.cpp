@@ -132,7 +132,7 @@ TEST(VtuWrite, VtkReadsBackWhatWasWritten) {
     const std::vector<std::int32_t> some{1, 4};
     const std::vector<CellData> data{{"skew<ness>\"&", {0.5f, 1.5f, 2.5f, 3.5f, 4.5f}}, {"some", {7, 8}, &some}};
     for (const bool compress : {true, false}) {
-        writeVtu(mesh, data, temp / "mesh.vtu", {.compress = compress}, Context());
+        writeVtu(mesh, buildCellFaces(mesh), data, temp / "mesh.vtu", {.compress = compress}, Context());
         const auto read = readBack(temp / "mesh.vtu");
         EXPECT_EQ(read["cells"], 5);
         EXPECT_EQ(read["points"], 18);
@@ -169,7 +169,7 @@ TEST(VtuWrite, ValuesOfSomePoints) {
     const std::vector<PointData> values{{"off_geometry", points, std::span<const float>(distance)},
                                         {"off_cause", points, std::span<const std::uint8_t>(cause)}};
     for (const bool compress : {true, false}) {
-        writeVtu(mesh, {}, temp / "mesh.vtu", {.compress = compress}, Context(), values);
+        writeVtu(mesh, buildCellFaces(mesh), {}, temp / "mesh.vtu", {.compress = compress}, Context(), values);
         const auto read = readBack(temp / "mesh.vtu");
         EXPECT_EQ(read["pointData"]["off_geometry"].get<std::vector<double>>(), expected);
         EXPECT_EQ(read["pointData"]["off_cause"].get<std::vector<double>>(), expectedCause);
@@ -177,7 +177,7 @@ TEST(VtuWrite, ValuesOfSomePoints) {
     }
     distance.pop_back();
     const std::vector<PointData> shorter{{"off_geometry", points, std::span<const float>(distance)}};
-    EXPECT_THROW(writeVtu(mesh, {}, temp / "short.vtu", {}, Context(), shorter), Error);
+    EXPECT_THROW(writeVtu(mesh, buildCellFaces(mesh), {}, temp / "short.vtu", {}, Context(), shorter), Error);
 }
 
 // Lists that run across many compressed blocks come back whole, hexahedra and polyhedra mixed.
@@ -185,7 +185,7 @@ TEST(VtuWrite, ManyBlocks) {
     if (!hasVtk()) GTEST_SKIP() << "python3-vtk9 is not installed";
     const TempFolder temp;
     const PolyMesh mesh = splitEveryThirdFace(test::boxMesh({30, 30, 30}, 0.5));
-    writeVtu(mesh, {}, temp / "mesh.vtu", {}, Context());
+    writeVtu(mesh, buildCellFaces(mesh), {}, temp / "mesh.vtu", {}, Context());
     const auto read = readBack(temp / "mesh.vtu");
     const auto volumes = read["volumes"].get<std::vector<double>>();
     EXPECT_EQ(volumes.size(), 27000u);
@@ -206,7 +206,7 @@ TEST(VtuWrite, SameBytesOnAnyNumberOfThreads) {
         {"volume", std::vector<float>(static_cast<std::size_t>(mesh.cells), 0.001f)}};
     for (const std::size_t threads : {1, 3}) {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-        writeVtu(mesh, data, temp / (std::to_string(threads) + ".vtu"), {}, Context());
+        writeVtu(mesh, buildCellFaces(mesh), data, temp / (std::to_string(threads) + ".vtu"), {}, Context());
         writePly(mesh, temp / (std::to_string(threads) + ".ply"), Context());
     }
     EXPECT_GT(contents(temp / "1.vtu").size(), 100000u);
@@ -218,7 +218,7 @@ TEST(VtuWrite, SameBytesOnAnyNumberOfThreads) {
 TEST(VtuWrite, RefusesDataOfTheWrongLength) {
     const TempFolder temp;
     const auto attempt = [&] {
-        writeVtu(test::zooMesh(), {{"short", {1, 2}}}, temp / "mesh.vtu", {}, Context());
+        writeVtu(test::zooMesh(), buildCellFaces(test::zooMesh()), {{"short", {1, 2}}}, temp / "mesh.vtu", {}, Context());
     };
     EXPECT_THROW(attempt(), Error);
     EXPECT_FALSE(std::filesystem::exists(temp / "mesh.vtu"));

@@ -60,9 +60,9 @@ int main(int argc, char** argv) {
             atomic.commit();
         });
     }
-    measure("vtu compressed", folder / "a.vtu", [&] { writeVtu(mesh, data, folder / "a.vtu", {}, context); });
+    measure("vtu compressed", folder / "a.vtu", [&] { writeVtu(mesh, buildCellFaces(mesh), data, folder / "a.vtu", {}, context); });
     measure("vtu raw", folder / "b.vtu",
-            [&] { writeVtu(mesh, data, folder / "b.vtu", {.compress = false}, context); });
+            [&] { writeVtu(mesh, buildCellFaces(mesh), data, folder / "b.vtu", {.compress = false}, context); });
     measure("ply all patches", folder / "a.ply", [&] {
         writePly(mesh, folder / "a.ply", context, {"bottom", "sides"});
     });

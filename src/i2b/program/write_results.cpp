@@ -1,5 +1,6 @@
 #include "i2b/program/write_results.h"
 #include "i2b/program/print.h"
+#include "i2b/assemble/mesh_topology.h"
 #include "i2b/core/memory.h"
 #include "i2b/quality/cell_quality.h"
 #include "i2b/write/atomic_folder.h"
@@ -47,12 +48,13 @@ void writeMeshFiles(const MeshResult& result, const OutputOptions& output, Atomi
     const std::vector<PointData> values{{"off_geometry", result.wallNodes.points, std::span<const float>(off)},
                                         {"off_cause", result.wallNodes.points, std::span(causes, result.offCauses.size())}};
     if (wants(output, "vtu")) {
-        CellQuality q = measureCellQuality(mesh);
+        const Rows cellFaces = buildCellFaces(mesh);
+        CellQuality q = measureCellQuality(mesh, cellFaces);
         std::vector<CellData> data = layerData(result.walls);
         data.push_back({"nonOrthogonality", std::move(q.nonOrthogonality)});
         data.push_back({"skewness", std::move(q.skewness)});
         data.push_back({"volume", std::move(q.volume)});
-        writeVtu(mesh, data, folder.place("mesh.vtu"), {}, context, values);
+        writeVtu(mesh, cellFaces, data, folder.place("mesh.vtu"), {}, context, values);
     }
     if (wants(output, "ply")) writePly(mesh, folder.place("wall.ply"), context, {}, values);
 }

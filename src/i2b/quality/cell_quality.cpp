@@ -22,8 +22,8 @@ void raise(float& to, float value) {
 
 } // namespace
 
-CellQuality measureCellQuality(const PolyMesh& mesh) {
-    const RawVector<CellMoments> moments = measureCellMoments(mesh, buildCellFaces(mesh));
+CellQuality measureCellQuality(const PolyMesh& mesh, const Rows& cellFaces) {
+    const RawVector<CellMoments> moments = measureCellMoments(mesh, cellFaces);
     CellQuality quality;
     quality.nonOrthogonality.assign(moments.size(), 0);
     quality.skewness.assign(moments.size(), 0);

@@ -1,6 +1,6 @@
 // Quality cell by cell, for looking at: the worst of each cell's faces.
 #pragma once
-#include "i2b/assemble/poly_mesh.h"
+#include "i2b/assemble/mesh_topology.h"
 #include <vector>
 
 namespace i2b {
@@ -11,6 +11,7 @@ struct CellQuality {                     // one value per cell each
     std::vector<float> volume;           // m^3
 };
 
-CellQuality measureCellQuality(const PolyMesh& mesh);
+// cellFaces: of all cells, as buildCellFaces() gives them.
+CellQuality measureCellQuality(const PolyMesh& mesh, const Rows& cellFaces);
 
 } // namespace i2b

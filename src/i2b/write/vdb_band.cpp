@@ -115,6 +115,16 @@ Mask::Ptr bandTopology(const CellGrid& grid, const CutCells& cut, int level, int
     return band;
 }
 
+// The voxels of a leaf such that each lies beside the one before.
+constexpr std::array<std::uint16_t, 512> toAndFro = [] {
+    std::array<std::uint16_t, 512> order{};
+    for (unsigned i = 0; i < 512; ++i) {
+        const unsigned x = i >> 6, y = (i >> 3 & 7) ^ (x & 1 ? 7u : 0u), z = (i & 7) ^ (i >> 3 & 1 ? 7u : 0u);
+        order[i] = static_cast<std::uint16_t>(x << 6 | y << 3 | z);
+    }
+    return order;
+}();
+
 struct Block {
     std::array<float, 512> distance{};
     std::array<Side, 512> side{};
@@ -129,20 +139,21 @@ class BandBuilder {
         for (std::size_t i = 0; i < leaves_.size(); ++i) number_[leaves_[i]->origin()] = i;
     }
 
-    void measure(const SideLookup& shared, const Context& context) {
+    // Distances up to `width`; infinite beyond.
+    void measure(const SideLookup& shared, double width, const Context& context) {
         parallelChunks(leaves_.size(), 16, [&](std::size_t begin, std::size_t end, std::size_t) {
             context.checkCancelled();
             const SideLookup sideOf(shared); // accessors are one thread's own
             for (std::size_t i = begin; i < end; ++i) {
                 Vec3 near;
                 double reach = std::numeric_limits<double>::infinity(); // of the geometry from near
-                for (openvdb::Index n = 0; n < 512; ++n) {
+                for (const openvdb::Index n : toAndFro) {
                     const Coord c = leaves_[i]->offsetToGlobalCoord(n);
                     blocks_[i].side[n] = sideOf(level_, c);
                     if (!leaves_[i]->isValueOn(n)) continue;
                     const Vec3 p = centre(c);
                     // It cannot be farther than by way of the voxel before: much is never looked at.
-                    reach = distance_(p, 1.000001 * (reach + norm(p - near)));
+                    reach = distance_(p, 1.000001 * std::min(reach + norm(p - near), width));
                     near = p;
                     blocks_[i].distance[n] = static_cast<float>(reach);
                 }
@@ -283,7 +294,7 @@ SurfaceBand buildSurfaceBand(const CellGrid& grid, const CutCells& cut, const Re
     const Mask::Ptr band = bandTopology(grid, cut, level, halfWidth);
     const auto width = static_cast<float>(halfWidth * grid.lattice.h(level));
     BandBuilder builder(grid, *band, level, distance);
-    builder.measure(SideLookup(grid, cut, fluid), context);
+    builder.measure(SideLookup(grid, cut, fluid), width, context);
     builder.passSigns(context);
     SurfaceBand result;
     result.level = level;

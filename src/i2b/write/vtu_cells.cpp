@@ -8,41 +8,36 @@ using Span = std::span<const std::int32_t>;
 
 bool holds(Span face, std::int32_t v) { return std::find(face.begin(), face.end(), v) != face.end(); }
 
-// The other end of the edge that leaves v in the face and does not lead to `from`; -1 where from-v is no edge
-// of it.
-std::int32_t across(Span face, std::int32_t from, std::int32_t v) {
-    const std::size_t n = face.size();
-    for (std::size_t i = 0; i < n; ++i) {
-        if (face[i] != v) continue;
-        const std::int32_t before = face[(i + n - 1) % n], after = face[(i + 1) % n];
-        if (before == from) return after;
-        if (after == from) return before;
-    }
-    return -1;
-}
-
-// The points above the base polygon: for each edge of it one other face holds that edge and leads up from
-// both its ends. False where these disagree, or a point above is one of the base.
+// The points above the base polygon: each edge of it is in one other face, which leads up from both its ends. False where
+// these disagree, or a point above is one of the base. No face has more than four vertices.
 bool raise(const PolyMesh& mesh, Span cellFaces, std::int32_t base, std::span<const std::int32_t> ring,
            std::span<std::int32_t> above) {
     std::fill(above.begin(), above.end(), -1);
-    const std::size_t n = ring.size();
-    for (std::size_t i = 0; i < n; ++i) {
-        const std::size_t j = (i + 1) % n;
-        int found = 0;
-        for (const std::int32_t f : cellFaces) {
-            if (f == base) continue;
-            const Span face = mesh.face(f);
-            const std::int32_t a = across(face, ring[j], ring[i]), b = across(face, ring[i], ring[j]);
-            if (a < 0 || b < 0) continue;
-            ++found;
+    const std::size_t n = ring.size(), none = n;
+    const auto spotOf = [&](std::int32_t v) {
+        std::size_t i = 0;
+        while (i < n && ring[i] != v) ++i;
+        return i;
+    };
+    const auto after = [](std::size_t i, std::size_t of) { return i + 1 == of ? 0 : i + 1; };
+    std::array<int, 4> facesOf{}; // per edge of the base
+    for (const std::int32_t f : cellFaces) {
+        if (f == base) continue;
+        const Span face = mesh.face(f);
+        const std::size_t m = face.size();
+        std::array<std::size_t, 4> spot;
+        for (std::size_t k = 0; k < m; ++k) spot[k] = spotOf(face[k]);
+        for (std::size_t k = 0; k < m; ++k) {
+            const std::size_t next = after(k, m), i = spot[k], j = spot[next];
+            if (i == none || j == none || (after(i, n) != j && after(j, n) != i)) continue;
+            ++facesOf[after(i, n) == j ? i : j];
+            const std::int32_t a = face[k == 0 ? m - 1 : k - 1], b = face[after(next, m)];
             if ((above[i] >= 0 && above[i] != a) || (above[j] >= 0 && above[j] != b)) return false;
             above[i] = a, above[j] = b;
         }
-        if (found != 1) return false;
     }
-    for (const std::int32_t v : above)
-        if (v < 0 || holds(ring, v)) return false;
+    for (std::size_t i = 0; i < n; ++i)
+        if (facesOf[i] != 1 || above[i] < 0 || spotOf(above[i]) != none) return false;
     return true;
 }
 

@@ -102,16 +102,16 @@ class ListEnds {
 
 // What is known of each cell before anything is written: its type and where its lists end.
 struct CellTable {
-    Rows faces;
+    const Rows& faces;
     std::vector<std::uint8_t> types;
     ListEnds pointsEnd; // of its points in connectivity
     ListEnds facesEnd;  // of its face stream; the same as the cell's before unless a polyhedron
     bool polyhedra() const { return facesEnd.back() > 0; }
 };
 
-CellTable buildCellTable(const PolyMesh& mesh) {
+CellTable buildCellTable(const PolyMesh& mesh, const Rows& cellFaces) {
     const auto n = static_cast<std::size_t>(mesh.cells);
-    CellTable table{buildCellFaces(mesh), std::vector<std::uint8_t>(n), ListEnds(n), ListEnds(n)};
+    CellTable table{cellFaces, std::vector<std::uint8_t>(n), ListEnds(n), ListEnds(n)};
     parallelChunks(n, 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
         std::vector<std::int32_t> points;
         for (std::size_t c = begin; c < end; ++c) {
@@ -345,11 +345,11 @@ std::vector<Array> cellArrays(const PolyMesh& mesh, const std::vector<CellData>&
 
 } // namespace
 
-void writeVtu(const PolyMesh& mesh, const std::vector<CellData>& data, const std::filesystem::path& path,
+void writeVtu(const PolyMesh& mesh, const Rows& cellFaces, const std::vector<CellData>& data, const std::filesystem::path& path,
               const VtuWriteOptions& options, const Context& context, const std::vector<PointData>& values) {
     const std::vector<std::int32_t> walls = wallPatches(mesh);
     std::vector<Array> cellData = cellArrays(mesh, data, walls), pointData = pointArrays(mesh, values);
-    const CellTable table = buildCellTable(mesh);
+    const CellTable table = buildCellTable(mesh, cellFaces);
     context.checkCancelled();
     Array points = plainArray<double>("Points", {&mesh.points.data()->x, 3 * mesh.points.size()});
     points.attributes += " NumberOfComponents=\"3\"";

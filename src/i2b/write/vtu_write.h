@@ -1,9 +1,9 @@
 // PolyMesh as a VTK XML unstructured grid: appended raw binary in zlib blocks of fixed size, compressed in
 // parallel. Tetrahedra, pyramids, wedges and hexahedra as such, all other cells as VTK_POLYHEDRON
-// (vtu_cells.h). Points are doubles; indices are 32-bit where they fit. Nothing but the cells' faces is held
-// in memory beside the mesh.
+// (vtu_cells.h). Points are doubles; indices are 32-bit where they fit. Nothing but what is a few bytes a cell is held
+// in memory beside the mesh and the faces of its cells (buildCellFaces()).
 #pragma once
-#include "i2b/assemble/poly_mesh.h"
+#include "i2b/assemble/mesh_topology.h"
 #include "i2b/core/context.h"
 #include "i2b/write/point_data.h"
 #include <filesystem>
@@ -27,7 +27,7 @@ struct VtuWriteOptions {
 // Cell data written: level, layer, region (where the mesh has them), patch (number of the first wall patch
 // the cell lies at, else -1), then `data`; point data: `points`. Throws Error{input} (unwritable, disk full), Error{internal} (data
 // of the wrong length) and Cancelled.
-void writeVtu(const PolyMesh& mesh, const std::vector<CellData>& data, const std::filesystem::path& path,
+void writeVtu(const PolyMesh& mesh, const Rows& cellFaces, const std::vector<CellData>& data, const std::filesystem::path& path,
               const VtuWriteOptions& options, const Context& context, const std::vector<PointData>& points = {});
 
 } // namespace i2b
