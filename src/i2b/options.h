@@ -3,9 +3,11 @@
 #pragma once
 #include "i2b/core/vec.h"
 #include "i2b/quality/dictionary_limits.h"
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace i2b {
@@ -141,6 +143,7 @@ struct OutputOptions {
     std::string folder = "i2b-case";
     std::vector<std::string> formats{"openfoam", "vtu", "ply", "vdb", "report"};
     bool ascii = false;                  // polyMesh as text instead of binary
+    bool wants(std::string_view format) const { return std::find(formats.begin(), formats.end(), format) != formats.end(); }
 };
 
 struct Options {

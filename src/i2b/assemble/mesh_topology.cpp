@@ -2,6 +2,7 @@
 #include "i2b/core/rows.h"
 #include <algorithm>
 #include <atomic>
+#include <numeric>
 
 namespace i2b {
 namespace {
@@ -36,20 +37,51 @@ void unite(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b) {
     }
 }
 
+// Per cell the first of the internal faces that it or a later one owns, and their end; empty where these faces do not follow each
+// other owner by owner, as they do in OpenFOAM's order.
+RawVector<std::uint32_t> ownedRuns(const PolyMesh& mesh) {
+    const Index internal = mesh.neighbour.size(), cells = Index(mesh.cells);
+    const bool inOrder = orderedReduce(
+        internal, true,
+        [&](Index begin, Index end) { return std::is_sorted(mesh.owner.begin() + std::ptrdiff_t(begin), mesh.owner.begin() + std::ptrdiff_t(std::min(end + 1, internal))); },
+        [](bool a, bool b) { return a && b; });
+    RawVector<std::uint32_t> first;
+    if (!inOrder) return first;
+    first.resize(cells + 1);
+    parallelFor(internal + 1, [&](Index f) { // the cells from the face before's owner to its own
+        const Index from = f == 0 ? 0 : Index(mesh.owner[f - 1]) + 1, to = f == internal ? cells + 1 : Index(mesh.owner[f]) + 1;
+        for (Index c = from; c < to; ++c) first[c] = static_cast<std::uint32_t>(f);
+    }, 4096);
+    return first;
+}
+
 } // namespace
 
 Rows buildCellFaces(const PolyMesh& mesh) {
-    Rows rows;
-    const Index internal = mesh.neighbour.size();
-    const auto cellsOf = [&](Index f, const auto& put) {
-        put(Index(mesh.owner[f]));
+    const Index internal = mesh.neighbour.size(), cells = Index(mesh.cells);
+    const RawVector<std::uint32_t> own = ownedRuns(mesh);
+    const auto cellsOf = [&](Index f, const auto& put) { // but for the runs
+        if (own.empty() || f >= internal) put(Index(mesh.owner[f]));
         if (f < internal) put(Index(mesh.neighbour[f]));
     };
     const auto ownedFirst = [&](Index cell, std::int32_t a, std::int32_t b) {
         const bool owns = Index(mesh.owner[Index(a)]) == cell, other = Index(mesh.owner[Index(b)]) == cell;
         return owns != other ? owns : a < b;
     };
-    turnIntoRows(Index(mesh.cells), 0, mesh.owner.size(), cellsOf, ownedFirst, rows.offsets, rows.items);
+    Rows others;
+    turnIntoRows(cells, 0, mesh.owner.size(), cellsOf, ownedFirst, others.offsets, others.items);
+    if (own.empty()) return others;
+    Rows rows;
+    rows.offsets.resize(cells + 1);
+    rows.items.resize(others.items.size() + internal);
+    parallelFor(cells + 1, [&](Index c) {
+        rows.offsets[c] = own[c] + others.offsets[c];
+        if (c == cells) return;
+        std::int32_t* const row = rows.items.data() + rows.offsets[c];
+        const std::uint32_t owned = own[c + 1] - own[c];
+        std::iota(row, row + owned, static_cast<std::int32_t>(own[c]));
+        std::copy(others.items.data() + others.offsets[c], others.items.data() + others.offsets[c + 1], row + owned);
+    }, 4096);
     return rows;
 }
 

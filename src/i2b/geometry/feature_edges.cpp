@@ -74,6 +74,7 @@ double largestFold(const FeatureSoup& soup, const Side* sides, std::size_t n) {
         const Vec3 d = soup.points[sides[i].apex] - a;
         return d - e * dot(d, e);
     };
+    if (n == 2) return fold(direction(0), direction(1));
     double largest = 0;
     for (std::size_t i = 0; i < n; ++i) {
         double best = 180;
@@ -81,7 +82,7 @@ double largestFold(const FeatureSoup& soup, const Side* sides, std::size_t n) {
             if (j == i) continue;
             const double f = fold(direction(i), direction(j));
             best = std::min(best, f);
-            if (n > 2) largest = std::max(largest, std::min(f, 180 - f));
+            largest = std::max(largest, std::min(f, 180 - f));
         }
         largest = std::max(largest, best);
     }

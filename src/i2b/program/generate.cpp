@@ -85,7 +85,7 @@ void dropPlaces(std::vector<T>& values, const std::vector<std::int32_t>& places)
 
 // What the mesh has come to, by itself and beside the geometry.
 void judge(MeshResult& out, const FeatureGraph& features, const FitSummary& fitted, const RepairSummary& repaired, const DictionaryLimits& limits,
-           Context& context) {
+           bool keepCells, Context& context) {
     const SurfaceIndex& index = *out.cartesian->index;
     Checksum sum;
     const LoopFence fence;
@@ -96,7 +96,7 @@ void judge(MeshResult& out, const FeatureGraph& features, const FitSummary& fitt
         fence.leave();
     });
     out.report.quality = stage(
-        context, "quality", [&] { return measureQuality(out.mesh, {}, limits); },
+        context, "quality", [&] { return measureQuality(out.mesh, {}, limits, keepCells ? &out.cells : nullptr); },
         [](const QualityReport& q) { return q.cells; });
     out.report.fit = stage(
         context, "fit quality",
@@ -216,7 +216,7 @@ MeshResult generate(const Options& options, Context& context) {
         if (patch.type == "wall") out.report.wallFaces += patch.count;
     walls.front = {}, walls.laid = {}; // from here on the mesh speaks for itself
     lattice.reset();
-    judge(out, features, walls.fitted, walls.repaired, limits, context);
+    judge(out, features, walls.fitted, walls.repaired, limits, options.output.wants("vtu"), context);
     return out;
 }
 

@@ -10,6 +10,7 @@
 #include "i2b/layers/layer_report.h"
 #include "i2b/options.h"
 #include "i2b/paint/regions.h"
+#include "i2b/quality/cell_quality.h"
 #include "i2b/sizing/size_field.h"
 #include "i2b/write/report.h"
 #include <memory>
@@ -34,6 +35,7 @@ struct MeshResult {
     std::unique_ptr<GridResult> cartesian;
     PolyMesh mesh;
     WallLayers walls; // wallCell: of the mesh
+    CellGeometry cells;             // of the mesh, where a file asks for it (vtu); else empty
     WallNodes wallNodes;            // how far each is off the geometry
     std::vector<OffCause> offCauses; // and why; as wallNodes.points
     RunReport report; // all but the total time and memory, which the caller knows at its end

@@ -1,6 +1,5 @@
 #include "i2b/program/write_results.h"
 #include "i2b/program/print.h"
-#include "i2b/assemble/mesh_topology.h"
 #include "i2b/core/memory.h"
 #include "i2b/quality/cell_quality.h"
 #include "i2b/write/atomic_folder.h"
@@ -9,16 +8,11 @@
 #include "i2b/write/report_write.h"
 #include "i2b/write/vdb_write.h"
 #include "i2b/write/vtu_write.h"
-#include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
 
 namespace i2b {
 namespace {
-
-bool wants(const OutputOptions& output, const char* format) {
-    return std::ranges::find(output.formats, format) != output.formats.end();
-}
 
 // What the layers came to, on the cells at the wall.
 std::vector<CellData> layerData(const WallLayers& walls) {
@@ -36,7 +30,7 @@ void writeMeshFiles(const MeshResult& result, const OutputOptions& output, Atomi
     const PolyMesh& mesh = result.mesh;
     Stage stage(context, "write");
     stage.items = static_cast<std::uint64_t>(mesh.cells);
-    if (wants(output, "openfoam")) {
+    if (output.wants("openfoam")) {
         FoamWriteOptions options;
         options.ascii = output.ascii;
         options.note = "i2b " I2B_VERSION;
@@ -47,21 +41,22 @@ void writeMeshFiles(const MeshResult& result, const OutputOptions& output, Atomi
     const auto* const causes = reinterpret_cast<const std::uint8_t*>(result.offCauses.data());
     const std::vector<PointData> values{{"off_geometry", result.wallNodes.points, std::span<const float>(off)},
                                         {"off_cause", result.wallNodes.points, std::span(causes, result.offCauses.size())}};
-    if (wants(output, "vtu")) {
-        const Rows cellFaces = buildCellFaces(mesh);
-        CellQuality q = measureCellQuality(mesh, cellFaces);
+    if (output.wants("vtu")) {
+        const CellGeometry made = result.cells.moments.empty() ? geometryOfCells(mesh) : CellGeometry{};
+        const CellGeometry& cells = result.cells.moments.empty() ? made : result.cells;
+        CellQuality q = measureCellQuality(mesh, cells);
         std::vector<CellData> data = layerData(result.walls);
         data.push_back({"nonOrthogonality", std::move(q.nonOrthogonality)});
         data.push_back({"skewness", std::move(q.skewness)});
         data.push_back({"volume", std::move(q.volume)});
-        writeVtu(mesh, cellFaces, data, folder.place("mesh.vtu"), {}, context, values);
+        writeVtu(mesh, cells.faces, data, folder.place("mesh.vtu"), {}, context, values);
     }
-    if (wants(output, "ply")) writePly(mesh, folder.place("wall.ply"), context, {}, values);
+    if (output.wants("ply")) writePly(mesh, folder.place("wall.ply"), context, {}, values);
 }
 
 void writeGridFile(const GridResult& result, const RunReport& report, const Options& options, AtomicFolder& folder,
                    Context& context) {
-    if (!wants(options.output, "vdb")) return;
+    if (!options.output.wants("vdb")) return;
     Stage stage(context, "write grid");
     stage.items = result.grid.cellCount();
     const bool carved = !result.kept.levels.empty();
@@ -81,7 +76,7 @@ void writeGridFile(const GridResult& result, const RunReport& report, const Opti
 void writeReportFile(RunReport& report, const OutputOptions& output, AtomicFolder& folder,
                      const CompleteReport& complete) {
     complete(report);
-    if (wants(output, "report")) writeReport(report, folder.place("report.json"));
+    if (output.wants("report")) writeReport(report, folder.place("report.json"));
 }
 
 } // namespace
@@ -90,7 +85,7 @@ void writeMeshResults(MeshResult& result, const Options& options, Context& conte
                       const CompleteReport& complete) {
     AtomicFolder folder(options.output.folder);
     writeMeshFiles(result, options.output, folder, context);
-    result.mesh = {}, result.walls = {}, result.wallNodes = {}, result.offCauses = {}; // on the disk by now
+    result.mesh = {}, result.cells = {}, result.walls = {}, result.wallNodes = {}, result.offCauses = {}; // on the disk by now
     returnFreedMemory();
     writeGridFile(*result.cartesian, result.report, options, folder, context);
     writeReportFile(result.report, options.output, folder, complete);

@@ -22,8 +22,14 @@ void raise(float& to, float value) {
 
 } // namespace
 
-CellQuality measureCellQuality(const PolyMesh& mesh, const Rows& cellFaces) {
-    const RawVector<CellMoments> moments = measureCellMoments(mesh, cellFaces);
+CellGeometry geometryOfCells(const PolyMesh& mesh) {
+    CellGeometry cells{buildCellFaces(mesh), {}};
+    cells.moments = measureCellMoments(mesh, cells.faces);
+    return cells;
+}
+
+CellQuality measureCellQuality(const PolyMesh& mesh, const CellGeometry& cells) {
+    const RawVector<CellMoments>& moments = cells.moments;
     CellQuality quality;
     quality.nonOrthogonality.assign(moments.size(), 0);
     quality.skewness.assign(moments.size(), 0);

@@ -1,3 +1,4 @@
+#include "i2b/quality/cell_quality.h"
 #include "i2b/quality/measure_steps.h"
 #include <algorithm>
 
@@ -75,7 +76,7 @@ Box pointBox(std::span<const Vec3> points) {
 
 } // namespace
 
-QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits, const DictionaryLimits& dictionary) {
+QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits, const DictionaryLimits& dictionary, CellGeometry* left) {
     Measurement m{mesh, limits, dictionary, {}, {}, {}, {}, {}, {}, {}};
     m.report.limits = limits;
     m.report.cells = mesh.cells;
@@ -88,6 +89,7 @@ QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits, 
     m.cellFaces = buildCellFaces(mesh);
     measureCells(m);
     measureZones(m);
+    if (left) left->faces = std::move(m.cellFaces);
     m.cellFaces = {};
     measureFaces(m);
     measureRegions(m);
@@ -96,6 +98,7 @@ QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits, 
     measurePoints(m, pointFaces);
     measureFaceFaces(m, pointFaces);
     listChecks(m);
+    if (left) left->moments = std::move(m.moments);
     return std::move(m.report);
 }
 
