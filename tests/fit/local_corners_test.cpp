@@ -1,4 +1,4 @@
-// Proves: inverse cube roots are right but for their last digits, in lanes bit for bit as alone; the energy
+// Proves: energies are told from a limit without a root as with it; inverse cube roots are right but for their last digits, in lanes bit for bit as alone; the energy
 // of a node's corners is that of a plain sum over them, with the derivatives that differences give; a corner inside out
 // makes it infinite and pulls the node the way that rights it.
 #include "i2b/fit/local_corners.h"
@@ -21,6 +21,22 @@ TEST(InverseCubeRoot, IsRightToItsLastDigits) {
         ASSERT_EQ(lanes[3], inverseCubeRoot(x));
         ASSERT_EQ(lanes[2], inverseCubeRoot(2 * x));
     }
+}
+
+TEST(EnergyExceeds, AgreesWithTheEnergy) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> trace(0.1, 30), det(-1, 4);
+    int over = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const double t = trace(random), d = det(random), energy = energyOf(t, d);
+        for (const double limit : {2.2, 4.0, 0.4, 1e3}) {
+            if (std::abs(energy - limit) < 1e-12 * limit) continue;
+            ASSERT_EQ(energyExceeds(t, d, limit), energy > limit) << t << ' ' << d << ' ' << limit;
+            over += energy > limit;
+        }
+        ASSERT_EQ(energyExceeds(t, d, std::numeric_limits<double>::max()), !(d > 0));
+    }
+    EXPECT_GT(over, 10000);
 }
 
 // Some corners around node 0, which is in each of their four places; of unlike sizes and weights, none inside out.

@@ -37,6 +37,16 @@ struct Progress {
     }
 };
 
+struct TraceAndDet {
+    double trace, det;
+};
+TraceAndDet lookAt(const Corner& c, const std::vector<Vec3>& x) {
+    const Vec3& x0 = x[static_cast<std::size_t>(c.node[0])];
+    const Vec3 e1 = x[static_cast<std::size_t>(c.node[1])] - x0, e2 = x[static_cast<std::size_t>(c.node[2])] - x0, e3 = x[static_cast<std::size_t>(c.node[3])] - x0;
+    const double i1 = double(c.inverseLength[0]), i2 = double(c.inverseLength[1]), i3 = double(c.inverseLength[2]);
+    return {norm2(e1) * i1 * i1 + norm2(e2) * i2 * i2 + norm2(e3) * i3 * i3, dot(cross(e1, e2), e3) * i1 * i2 * i3};
+}
+
 void mark(std::uint8_t& flag) { std::atomic_ref<std::uint8_t>(flag).store(1, std::memory_order_relaxed); } // all set the same
 
 // Marks the nodes of bad corners. Only corners with a node that has moved since the last round are judged again: where
@@ -44,7 +54,7 @@ void mark(std::uint8_t& flag) { std::atomic_ref<std::uint8_t>(flag).store(1, std
 void markBadCorners(const Band& band, const std::vector<Vec3>& x, double limit, Progress& progress) {
     const auto isMoved = [&](std::int32_t m) { return static_cast<std::size_t>(m) < band.movable && progress.moved[static_cast<std::size_t>(m)]; };
     const auto judge = [&](const Corner& corner) {
-        if (!(cornerEnergy(corner, x) > limit)) return;
+        if (const TraceAndDet c = lookAt(corner, x); !energyExceeds(c.trace, c.det, limit)) return;
         for (std::int32_t m : corner.node) progress.mark(m);
     };
     const std::size_t moved = orderedReduce(band.movable, std::size_t(0), [&](std::size_t begin, std::size_t end) {
@@ -123,11 +133,8 @@ void place(const Band& band, const std::vector<Vec3>& start, const std::vector<V
 } // namespace
 
 double cornerEnergy(const Corner& c, const std::vector<Vec3>& x) {
-    const Vec3& x0 = x[static_cast<std::size_t>(c.node[0])];
-    const Vec3 e1 = x[static_cast<std::size_t>(c.node[1])] - x0, e2 = x[static_cast<std::size_t>(c.node[2])] - x0, e3 = x[static_cast<std::size_t>(c.node[3])] - x0;
-    const double i1 = double(c.inverseLength[0]), i2 = double(c.inverseLength[1]), i3 = double(c.inverseLength[2]);
-    const double trace = norm2(e1) * i1 * i1 + norm2(e2) * i2 * i2 + norm2(e3) * i3 * i3;
-    return energyOf(trace, dot(cross(e1, e2), e3) * i1 * i2 * i3);
+    const TraceAndDet look = lookAt(c, x);
+    return energyOf(look.trace, look.det);
 }
 
 double scaledJacobian(const Corner& c, const std::vector<Vec3>& x) {
@@ -140,7 +147,7 @@ double scaledJacobian(const Corner& c, const std::vector<Vec3>& x) {
 std::vector<std::uint8_t> nodesOfPoorCorners(const Band& band, const std::vector<Vec3>& x, double limit) {
     std::vector<std::uint8_t> poor(band.nodes(), 0);
     parallelFor(band.corners.size(), [&](std::size_t c) {
-        if (!(cornerEnergy(band.corners[c], x) > limit)) return;
+        if (const TraceAndDet look = lookAt(band.corners[c], x); !energyExceeds(look.trace, look.det, limit)) return;
         for (std::int32_t n : band.corners[c].node) mark(poor[static_cast<std::size_t>(n)]);
     });
     poor.resize(band.movable);

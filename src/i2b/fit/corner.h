@@ -32,6 +32,13 @@ inline double energyOf(double trace, double det) {
     return 0.25 * trace * root2 + 0.125 * (det + root2 * root);
 }
 
+// energyOf() > limit, by its cube: no root.
+inline bool energyExceeds(double trace, double det, double limit) {
+    if (!(det > 0)) return true;
+    const double rest = limit - 0.125 * (det + 1 / det);
+    return !(rest > 0) || trace * trace * trace > 64 * (rest * rest * rest) * (det * det);
+}
+
 // Drops the components of a move that would leave the sides of the domain box.
 inline Vec3 withinSides(Vec3 move, std::uint8_t outside) {
     for (int axis = 0; axis < 3; ++axis) {
