@@ -1,6 +1,6 @@
-// Proves: energies are told from a limit without a root as with it; inverse cube roots are right but for their last digits, in lanes bit for bit as alone; the energy
-// of a node's corners is that of a plain sum over them, with the derivatives that differences give; a corner inside out
-// makes it infinite and pulls the node the way that rights it.
+// Proves: inverse cube roots are right but for their last digits, in lanes bit for bit as alone; energies are told from a
+// limit without a root as with one; the energy of a node's corners is that of a plain sum over them, with the derivatives
+// that differences give; a corner inside out makes it infinite and pulls the node the way that rights it.
 #include "i2b/fit/local_corners.h"
 #include <cmath>
 #include <gtest/gtest.h>
