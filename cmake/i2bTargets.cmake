@@ -23,16 +23,18 @@ function(i2b_stage name)
   set_property(GLOBAL APPEND PROPERTY I2B_STAGES i2b_${name})
 endfunction()
 
-# The precompiled OpenVDB header for a program, or another precompiled header that has it.
-function(i2b_program_uses_vdb target)
-  set(header i2b_vdb_pch ${ARGN})
-  list(GET header -1 header)
-  target_link_libraries(${target} PRIVATE OpenVDB::openvdb)
-  # GCC takes a precompiled header only with the code model it was made with: the stages' -fPIC, not the -fPIE
-  # that CMake gives programs.
+# A precompiled header for a program. GCC takes it only with the code model it was made with: the stages' -fPIC, not the
+# -fPIE that CMake gives programs.
+function(i2b_program_header target header)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
   target_compile_options(${target} PRIVATE -fPIC)
   target_precompile_headers(${target} REUSE_FROM ${header})
+endfunction()
+
+# That of OpenVDB.
+function(i2b_program_uses_vdb target)
+  target_link_libraries(${target} PRIVATE OpenVDB::openvdb)
+  i2b_program_header(${target} i2b_vdb_pch)
 endfunction()
 
 # The precompiled headers of tests: GoogleTest's, and these with OpenVDB's.
@@ -60,11 +62,10 @@ function(i2b_test name)
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(test_${name} PRIVATE i2b_settings i2b_test_helpers ${arg_STAGES} ${arg_LINK} GTest::gmock GTest::gtest_main)
   if(arg_OPENVDB)
-    i2b_program_uses_vdb(test_${name} i2b_vdb_test_pch)
+    target_link_libraries(test_${name} PRIVATE OpenVDB::openvdb)
+    i2b_program_header(test_${name} i2b_vdb_test_pch)
   else()
-    set_target_properties(test_${name} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
-    target_compile_options(test_${name} PRIVATE -fPIC)
-    target_precompile_headers(test_${name} REUSE_FROM i2b_test_pch)
+    i2b_program_header(test_${name} i2b_test_pch)
   endif()
   gtest_discover_tests(test_${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT ${arg_TIMEOUT})
 endfunction()

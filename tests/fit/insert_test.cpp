@@ -112,7 +112,7 @@ TEST(Insert, DividesEdgesAcrossABorderOfFlushParts) {
         }
         EXPECT_LT(a * b, 0); // crosses
     }
-    EXPECT_LE(5 * elsewhere, n);
+    EXPECT_LE(6 * elsewhere, n);
     ASSERT_EQ(run.front.firstInserted(), old.front.size());
     for (std::size_t v = 0; v < old.front.size(); ++v) { // nothing else moves
         EXPECT_EQ(old.front[v], run.front.front[v]);
