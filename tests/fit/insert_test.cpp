@@ -106,13 +106,15 @@ TEST(Insert, DividesEdgesAcrossABorderOfFlushParts) {
         const double b = borderSide(wallPoint(run.front, static_cast<std::size_t>(ends[1])));
         const Vec3 on = wallPoint(run.front, run.front.firstInserted() + i);
         if (std::abs(borderSide(on)) >= 0.05 * stagesSize) { // a sharp edge of the plate, to which no node is snapped either
-            EXPECT_TRUE(run.features.closestLine(on, 1e-9).found || offItsEdge(run.front, i) > 0.03);
+            const FeatureIndex::Line line = run.features.closestLine(on, 0.25 * stagesSize);
+            // or a bend, of which one so near to a sharp edge is a part
+            EXPECT_TRUE(line.found ? norm(line.point - on) < 1e-9 : offItsEdge(run.front, i) > 0.03);
             ++elsewhere;
             continue;
         }
         EXPECT_LT(a * b, 0); // crosses
     }
-    EXPECT_LE(6 * elsewhere, n);
+    EXPECT_LE(20 * elsewhere, n);
     ASSERT_EQ(run.front.firstInserted(), old.front.size());
     for (std::size_t v = 0; v < old.front.size(); ++v) { // nothing else moves
         EXPECT_EQ(old.front[v], run.front.front[v]);
