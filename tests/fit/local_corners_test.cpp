@@ -1,6 +1,6 @@
-// Proves: cube roots are right but for their last digits; energies are told from a limit without a root as with one; the energy
-// of a node's corners is that of a plain sum over them, with the derivatives that differences give; a corner inside out
-// makes it infinite.
+// Proves: inverse cube roots are right but for their last digits, in lanes bit for bit as alone; energies are told from a
+// limit without a root as with one; the energy of a node's corners is that of a plain sum over them, with the derivatives
+// that differences give; a corner inside out makes it infinite and pulls the node the way that rights it.
 #include "i2b/fit/local_corners.h"
 #include <cmath>
 #include <gtest/gtest.h>
@@ -9,12 +9,17 @@
 namespace i2b::test {
 namespace {
 
-TEST(CubeRoot, IsRightButForItsLastDigits) {
+TEST(InverseCubeRoot, IsRightToItsLastDigits) {
     std::mt19937_64 random(7);
     std::uniform_real_distribution<double> power(-100, 100);
     for (int i = 0; i < 100000; ++i) {
         const double x = std::pow(10, power(random));
-        ASSERT_NEAR(cubeRoot(x) / std::cbrt(x), 1, 1e-11) << x;
+        const double exact = 1 / std::cbrt(x);
+        ASSERT_NEAR(inverseCubeRoot(x) / exact, 1, 2e-15) << x;
+        const CornerLanes lanes = inverseCubeRoot(CornerLanes(1, x, 2 * x, x));
+        ASSERT_EQ(lanes[1], inverseCubeRoot(x));
+        ASSERT_EQ(lanes[3], inverseCubeRoot(x));
+        ASSERT_EQ(lanes[2], inverseCubeRoot(2 * x));
     }
 }
 
@@ -121,17 +126,19 @@ TEST(LocalCorners, DerivativesAreThoseOfDifferences) {
     }
 }
 
-TEST(LocalCorners, InsideOutIsInfinite) {
+TEST(LocalCorners, InsideOutIsInfiniteAndPulledBack) {
     Star star(3, 1); // one corner, whose tip is node 0
     const Corner& c = star.band.corners[0];
     const auto at = [&](std::size_t k) { return star.x[static_cast<std::size_t>(c.node[k])]; };
     const Vec3 normal = normalized(cross(at(2) - at(1), at(3) - at(1)));
-    const double height = dot(star.x[0] - at(1), normal);
+    const Vec3 foot = star.x[0] - normal * dot(star.x[0] - at(1), normal);
+    const double side = dot(star.x[0] - at(1), normal) > 0 ? 1 : -1;
     for (const double beyond : {0.02, 0.1, 0.3}) {
-        star.x[0] -= normal * (dot(star.x[0] - at(1), normal) + std::copysign(beyond, height));
+        star.x[0] = foot - normal * (side * beyond);
         LocalCorners corners;
         corners.gather(star.band, 0, star.x);
         EXPECT_TRUE(std::isinf(corners.energy({})));
+        EXPECT_LT(dot(corners.derivatives({}).gradient, normal * side), 0) << "downhill leads back through the plane of the others";
     }
 }
 

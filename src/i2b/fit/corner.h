@@ -11,22 +11,25 @@ inline double determinantOf(const Corner& c, const Vec3& x0, const Vec3& x1, con
     return dot(cross(x1 - x0, x2 - x0), x3 - x0) * scale;
 }
 
-// Cube root of a positive number to about 1e-14: a third of the exponent, then two Halley steps. Several times as fast
-// as the library's, and the same on every IEEE machine.
-inline double cubeRootGuess(double x) { return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) / 3 + 0x2a9f7893782da1ceull); }
-inline double cubeRoot(double x) {
-    double y = cubeRootGuess(x);
-    for (int i = 0; i < 2; ++i) {
-        const double t = y * y * y;
-        y *= (t + 2 * x) / (2 * t + x);
-    }
+// x^(-1/3) of a positive number but for its last digits, without a division: minus a third of the exponent and a few bits
+// more, then two Householder steps of fourth order, 0.036 -> 2e-5 -> 6e-16 off. The same on every IEEE machine.
+constexpr std::uint64_t inverseCubeRootMagic = 0x553ecf0000000000ull; // the least error from 1/8 to 8, by search
+template <class Number>
+Number inverseCubeRootStep(const Number& one, const Number& x, const Number& y) {
+    const Number r = one - x * y * y * y;
+    return y + y * r * (1.0 / 3 * one + r * (2.0 / 9 * one + 14.0 / 81 * r));
+}
+inline double inverseCubeRoot(double x) {
+    const auto top = static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(x) >> 46);
+    double y = std::bit_cast<double>(inverseCubeRootMagic - (std::uint64_t{top * 21845u} << 30)); // 65535 / 3
+    for (int i = 0; i < 2; ++i) y = inverseCubeRootStep(1.0, x, y);
     return y;
 }
 
 inline double energyOf(double trace, double det) {
     if (!(det > 0)) return std::numeric_limits<double>::infinity();
-    const double root = cubeRoot(det);
-    return 0.25 * trace / (root * root) + 0.125 * (det + 1 / det);
+    const double root = inverseCubeRoot(det), root2 = root * root;
+    return 0.25 * trace * root2 + 0.125 * (det + root2 * root);
 }
 
 // energyOf() > limit, by its cube: no root.

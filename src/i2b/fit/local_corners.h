@@ -1,8 +1,8 @@
 // The corners around one node as functions of that node's place: D is affine in it, |J|^2 quadratic. Both are exact for
 // any move of the node, so steps and line searches touch no memory.
 //
-// Corners are worked on four at a time, in lanes; sums run over them one by one, in order, so every result is that of a
-// plain loop, bit for bit, on any instruction set.
+// Corners are worked on four at a time, in lanes, each with its own sum; the four are added last, in order. What comes out
+// is the same, bit for bit, on any instruction set.
 #pragma once
 #include "i2b/fit/corner.h"
 #include <cmath>
@@ -22,10 +22,12 @@ struct CornerLanes { // the compiler's vectors, as a type of our own
     friend CornerLanes operator+(const CornerLanes& a, const CornerLanes& b) { return CornerLanes(a.v + b.v); }
     friend CornerLanes operator-(const CornerLanes& a, const CornerLanes& b) { return CornerLanes(a.v - b.v); }
     friend CornerLanes operator*(const CornerLanes& a, const CornerLanes& b) { return CornerLanes(a.v * b.v); }
-    friend CornerLanes operator/(const CornerLanes& a, const CornerLanes& b) { return CornerLanes(a.v / b.v); }
     friend CornerLanes operator*(double s, const CornerLanes& a) { return CornerLanes(s * a.v); }
     CornerLanes operator-() const { return CornerLanes(-v); }
+    double sum() const { return v[0] + v[1] + v[2] + v[3]; }
 };
+
+inline CornerLanes atLeast(const CornerLanes& a, double least) { return CornerLanes(a.v > least ? a.v : CornerLanes(least).v); }
 
 // where[i] == value ? a[i] : b[i]
 inline CornerLanes choose(const CornerLanes& where, double value, const CornerLanes& a, const CornerLanes& b) {
@@ -45,13 +47,12 @@ inline LaneVec3 choose(const CornerLanes& where, double value, const LaneVec3& a
     return {choose(where, value, a.x, b.x), choose(where, value, a.y, b.y), choose(where, value, a.z, b.z)};
 }
 
-inline CornerLanes cubeRoot(const CornerLanes& x) {
-    CornerLanes y;
-    for (std::size_t i = 0; i < CornerLanes::count; ++i) y.set(i, cubeRootGuess(x[i]));
-    for (int i = 0; i < 2; ++i) {
-        const CornerLanes t = y * y * y;
-        y = y * ((t + 2.0 * x) / (2.0 * t + x));
-    }
+inline CornerLanes inverseCubeRoot(const CornerLanes& x) {
+    using Bits = std::uint64_t __attribute__((vector_size(32)));
+    using Words = std::uint32_t __attribute__((vector_size(32)));
+    const Words third = Words(Bits(x.v) >> 46) * 21845u; // as in inverseCubeRoot() of a number
+    CornerLanes y(CornerLanes::Register(inverseCubeRootMagic - (Bits(third) << 30)));
+    for (int i = 0; i < 2; ++i) y = inverseCubeRootStep(CornerLanes(1), x, y);
     return y;
 }
 
@@ -89,7 +90,7 @@ class LocalCorners {
         LaneVec3 linear;
         CornerLanes trace0;
         CornerLanes weight;
-        CornerLanes det, trace, root, inverse; // where energy() was asked for last: D, trace, D^(1/3), 1 / D
+        CornerLanes det, trace, root2, inverse; // where energy() was asked for last: D, trace, D^(-2/3), 1 / D (of a D that is positive)
     };
     std::size_t groups() const { return (count_ + CornerLanes::count - 1) / CornerLanes::count; }
 
@@ -142,11 +143,8 @@ inline double LocalCorners::worstScaledJacobian() const {
     for (std::size_t i = 0; i < groups(); ++i) {
         const Group& c = groups_[i];
         const CornerLanes det = dot(cross(c.e0, c.e1), c.e2);
-        const CornerLanes n0 = dot(c.e0, c.e0), n1 = dot(c.e1, c.e1), n2 = dot(c.e2, c.e2);
-        for (std::size_t k = 0; k < CornerLanes::count; ++k) {
-            const double l = std::sqrt(n0[k]) * std::sqrt(n1[k]) * std::sqrt(n2[k]);
-            worst = std::min(worst, l > 0 ? det[k] / l : -1);
-        }
+        const CornerLanes lengths2 = dot(c.e0, c.e0) * dot(c.e1, c.e1) * dot(c.e2, c.e2);
+        for (std::size_t k = 0; k < CornerLanes::count; ++k) worst = std::min(worst, lengths2[k] > 0 ? det[k] / std::sqrt(lengths2[k]) : -1);
     }
     return worst;
 }
@@ -154,54 +152,51 @@ inline double LocalCorners::worstScaledJacobian() const {
 inline double LocalCorners::energy(const Vec3& d) {
     const LaneVec3 move{CornerLanes(d.x), CornerLanes(d.y), CornerLanes(d.z)};
     const CornerLanes length2(norm2(d));
-    double sum = 0;
-    bool inverted = false; // goes on all the same: faces that were just split may start so, and derivatives are asked for
+    CornerLanes sum(0);
+    // Faces that were just split may start with corners inside out: these pull as ones do that are almost flat.
+    constexpr double almostFlat = 1e-3;
+    bool inverted = false;
     for (std::size_t i = 0; i < groups(); ++i) {
         Group& c = groups_[i];
         c.det = c.det0 + dot(c.gradient, move);
         for (std::size_t k = 0; k < CornerLanes::count; ++k) inverted |= !(c.det[k] > 0);
         c.trace = c.trace0 + dot(c.linear, move) + c.quadratic * length2;
-        c.root = cubeRoot(c.det);
-        c.inverse = CornerLanes(1) / c.det;
-        const CornerLanes phi = 0.25 * c.trace / (c.root * c.root) + 0.125 * (c.det + c.inverse);
-        const CornerLanes part = c.weight * phi * phi * phi;
-        for (std::size_t k = 0; k < CornerLanes::count; ++k) sum += part[k];
+        const CornerLanes root = inverseCubeRoot(atLeast(c.det, almostFlat));
+        c.root2 = root * root;
+        c.inverse = c.root2 * root;
+        const CornerLanes phi = 0.25 * c.trace * c.root2 + 0.125 * (c.det + c.inverse);
+        sum = sum + c.weight * phi * phi * phi;
     }
-    return inverted ? std::numeric_limits<double>::infinity() : sum;
+    return inverted ? std::numeric_limits<double>::infinity() : sum.sum();
 }
 
 inline Derivatives LocalCorners::derivatives(const Vec3& d) const {
     const LaneVec3 move{CornerLanes(d.x), CornerLanes(d.y), CornerLanes(d.z)};
-    const CornerLanes quarter(0.25), one(1);
-    Derivatives sum;
+    const CornerLanes one(1), none(0);
+    LaneVec3 gradient{none, none, none};
+    CornerLanes xx = none, xy = none, xz = none, yy = none, yz = none, zz = none;
     for (std::size_t i = 0; i < groups(); ++i) {
         const Group& c = groups_[i];
-        const CornerLanes d23 = quarter / (c.root * c.root);
+        const CornerLanes d23 = 0.25 * c.root2, pull = c.trace * d23;
         const LaneVec3 t = c.linear + move * (2.0 * c.quadratic);
-        const CornerLanes phi = c.trace * d23 + 0.125 * (c.det + c.inverse);
-        const CornerLanes slope = -(2.0 / 3) * c.trace * d23 * c.inverse + 0.125 * (one - c.inverse * c.inverse); // d phi / d det
+        const CornerLanes phi = pull + 0.125 * (c.det + c.inverse);
+        const CornerLanes slope = -(2.0 / 3) * pull * c.inverse + 0.125 * (one - c.inverse * c.inverse); // d phi / d det
         const LaneVec3 dphi = t * d23 + c.gradient * slope;
         const CornerLanes w = 3.0 * c.weight * phi * phi;
-        const LaneVec3 gradient = dphi * w;
-        // In order: of 2 quadratic 1, (t g^T + g t^T), g g^T and dphi dphi^T, each with its weight.
+        gradient = gradient + dphi * w;
+        // 2 quadratic 1, (t g^T + g t^T), g g^T and dphi dphi^T, each with its weight.
         const LaneVec3& g = c.gradient;
-        const CornerLanes identity = w * CornerLanes(2) * c.quadratic * d23, both = -w * CornerLanes(2.0 / 3) * d23 * c.inverse;
-        const CornerLanes outer = w * ((10.0 / 9) * c.trace * d23 * c.inverse * c.inverse + 0.25 * c.inverse * c.inverse * c.inverse);
-        const LaneVec3 s = t * both, u = g * both, v = g * outer, r = dphi * (6.0 * c.weight * phi);
-        const CornerLanes cxx = 2.0 * s.x * g.x, cxy = s.x * g.y + u.x * t.y, cxz = s.x * g.z + u.x * t.z;
-        const CornerLanes cyy = 2.0 * s.y * g.y, cyz = s.y * g.z + u.y * t.z, czz = 2.0 * s.z * g.z;
-        const CornerLanes oxx = v.x * g.x, oxy = v.x * g.y, oxz = v.x * g.z, oyy = v.y * g.y, oyz = v.y * g.z, ozz = v.z * g.z;
-        const CornerLanes pxx = r.x * dphi.x, pxy = r.x * dphi.y, pxz = r.x * dphi.z, pyy = r.y * dphi.y, pyz = r.y * dphi.z, pzz = r.z * dphi.z;
-        for (std::size_t k = 0; k < CornerLanes::count; ++k) {
-            sum.gradient.x += gradient.x[k], sum.gradient.y += gradient.y[k], sum.gradient.z += gradient.z[k];
-            auto& h = sum.hessian;
-            h[0] += identity[k], h[3] += identity[k], h[5] += identity[k];
-            h[0] += cxx[k], h[1] += cxy[k], h[2] += cxz[k], h[3] += cyy[k], h[4] += cyz[k], h[5] += czz[k];
-            h[0] += oxx[k], h[1] += oxy[k], h[2] += oxz[k], h[3] += oyy[k], h[4] += oyz[k], h[5] += ozz[k];
-            h[0] += pxx[k], h[1] += pxy[k], h[2] += pxz[k], h[3] += pyy[k], h[4] += pyz[k], h[5] += pzz[k];
-        }
+        const CornerLanes wd = w * d23, identity = 2.0 * wd * c.quadratic, both = -(2.0 / 3) * wd * c.inverse;
+        const CornerLanes outer = w * c.inverse * c.inverse * ((10.0 / 9) * pull + 0.25 * c.inverse);
+        const LaneVec3 s = t * both + g * outer, u = g * both, r = dphi * (6.0 * c.weight * phi);
+        xx = xx + (identity + u.x * t.x + s.x * g.x + r.x * dphi.x);
+        yy = yy + (identity + u.y * t.y + s.y * g.y + r.y * dphi.y);
+        zz = zz + (identity + u.z * t.z + s.z * g.z + r.z * dphi.z);
+        xy = xy + (u.x * t.y + s.x * g.y + r.x * dphi.y);
+        xz = xz + (u.x * t.z + s.x * g.z + r.x * dphi.z);
+        yz = yz + (u.y * t.z + s.y * g.z + r.y * dphi.z);
     }
-    return sum;
+    return {{gradient.x.sum(), gradient.y.sum(), gradient.z.sum()}, {xx.sum(), xy.sum(), xz.sum(), yy.sum(), yz.sum(), zz.sum()}};
 }
 
 } // namespace i2b
