@@ -3,7 +3,7 @@
 // planes to the last bit; the front stands off as far as layers want.
 #include "carve/kept_checks.h"
 #include "i2b/carve/carve.h"
-#include "i2b/fit/fit.h"
+#include "i2b/fit/wall_views.h"
 #include <array>
 #include <atomic>
 #include <gtest/gtest.h>
@@ -168,19 +168,20 @@ TEST_P(Fit, EnergyFallsAndNoCornerTurnsOver) {
     forSettings(GetParam(), [](const Setting& s, unsigned seed) {
         const std::vector<std::uint8_t> all(s.band.movable, 1);
         const Context context;
+        WallViews views(s.band, *s.painted.index);
         EnergyOptions shapeOnly;
         shapeOnly.wallWeights = {0};
         std::vector<Vec3> x = s.band.start;
         double last = energyOver(s.band, x);
         for (int sweep = 0; sweep < 3; ++sweep) {
-            minimiseEnergy(s.band, *s.painted.index, s.features, s.snaps, all, x, shapeOnly, context);
+            minimiseEnergy(views, s.features, s.snaps, all, x, shapeOnly, context);
             const double now = energyOver(s.band, x);
             EXPECT_LT(now, last) << "seed " << seed;
             last = now;
         }
         EXPECT_EQ(inverted(s.band, x), 0u) << "seed " << seed;
         const EnergyOptions whole;
-        minimiseEnergy(s.band, *s.painted.index, s.features, s.snaps, all, x, whole, context);
+        minimiseEnergy(views, s.features, s.snaps, all, x, whole, context);
         EXPECT_EQ(inverted(s.band, x), 0u) << "seed " << seed;
         // The exact snap: a node either keeps its corners above the floor, or makes its worst no worse.
         const auto worst = [&](const std::vector<Vec3>& at) {
@@ -189,7 +190,7 @@ TEST_P(Fit, EnergyFallsAndNoCornerTurnsOver) {
             return w;
         };
         const double before = worst(x);
-        snapExactly(s.band, *s.painted.index, s.features, s.snaps, x, whole);
+        snapExactly(views, s.features, s.snaps, x, whole);
         EXPECT_GT(worst(x), 0) << "seed " << seed;
         EXPECT_GE(worst(x), std::min(before, whole.floor) - 1e-12) << "seed " << seed;
     });
@@ -218,6 +219,7 @@ TEST(Energy, SingleNodesEndWhereTheGradientVanishes) {
         }
         return norm(g);
     };
+    WallViews views(s.band, *s.painted.index);
     int tried = 0, still = 0;
     for (std::size_t n = 0; n < s.band.movable && tried < 60; n += 1 + s.band.movable / 60) {
         if (s.band.cornersOf[n].empty() || s.band.outside[n]) continue;
@@ -225,7 +227,7 @@ TEST(Energy, SingleNodesEndWhereTheGradientVanishes) {
         std::vector<std::uint8_t> one(s.band.movable, 0);
         one[n] = 1;
         std::vector<Vec3> x = s.band.start;
-        minimiseEnergy(s.band, *s.painted.index, s.features, s.snaps, one, x, options, context);
+        minimiseEnergy(views, s.features, s.snaps, one, x, options, context);
         EXPECT_LE(energyOver(s.band, s.band.cornersOf[n], x),
                   energyOver(s.band, s.band.cornersOf[n], s.band.start));
         for (std::size_t m = 0; m < s.band.nodes(); ++m) ASSERT_TRUE(m == n || x[m] == s.band.start[m]);

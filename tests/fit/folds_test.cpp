@@ -16,7 +16,7 @@ std::size_t snapFolds(const Unsnapped& run, std::vector<Snap>& snaps) {
 TEST(Folds, FindsWhatCrossingsLeaveOut) {
     Unsnapped run(turnedBox());
     std::vector<Snap> all(run.band.walls);
-    snapToFeatures(run.band, run.front, *run.painted.index, run.features, run.x, all);
+    snapToFeatures(run.views, run.front, run.features, run.x, all);
     std::vector<Snap> before = all;
     std::size_t kept = 0, taken = 0;
     for (Snap& s : before) {
@@ -61,7 +61,7 @@ TEST(Folds, SameOnAnyNumberOfThreads) {
     for (std::size_t threads : {1, 2, 3}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
         std::vector<Snap>& snaps = results.emplace_back(run.band.walls);
-        snapToFeatures(run.band, run.front, *run.painted.index, run.features, run.x, snaps);
+        snapToFeatures(run.views, run.front, run.features, run.x, snaps);
         snapFolds(run, snaps);
     }
     for (std::size_t k = 1; k < results.size(); ++k)

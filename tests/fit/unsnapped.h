@@ -1,5 +1,5 @@
 #pragma once
-#include "i2b/fit/fit.h"
+#include "i2b/fit/wall_views.h"
 #include "pipeline/stages_run.h"
 #include <map>
 
@@ -7,7 +7,7 @@ namespace i2b::test {
 
 // A fit without features, and the positions of the band's nodes after it: nothing is snapped to anything.
 struct Unsnapped : ToFront {
-    explicit Unsnapped(const Surface& soup) : ToFront(soup, stagesOptions()), band(buildBand(lattice, front, 2)), snaps(band.walls) {
+    explicit Unsnapped(const Surface& soup) : ToFront(soup, stagesOptions()), band(buildBand(lattice, front, 2)), views(band, *painted.index), snaps(band.walls) {
         FitOptions options;
         options.features = false;
         fitFront(front, lattice, *painted.index, graph, options, Context());
@@ -19,6 +19,7 @@ struct Unsnapped : ToFront {
         for (std::size_t v = 0; v < band.walls; ++v) x[v] = wallPoint(front, v), x[static_cast<std::size_t>(band.frontNode[v])] = front.front[v];
     }
     Band band;
+    WallViews views;
     std::vector<Vec3> x;
     std::vector<Snap> snaps;
 };

@@ -1,6 +1,6 @@
 #include "i2b/assemble/poly_mesh.h"
 #include "i2b/core/checksum.h"
-#include "i2b/core/parallel.h"
+#include "i2b/core/flags.h"
 #include <algorithm>
 #include <atomic>
 #include <fmt/format.h>
@@ -102,11 +102,7 @@ std::string pointFault(const PolyMesh& m) {
     if (at < faces) return fmt::format("face {} uses a point twice", at);
     std::vector<std::uint8_t> used(m.points.size(), 0);
     parallelFor(
-        m.faceVertices.size(),
-        [&](Index i) {
-            std::atomic_ref<std::uint8_t>(used[Index(m.faceVertices[i])]).store(1, std::memory_order_relaxed);
-        },
-        4096);
+        m.faceVertices.size(), [&](Index i) { setFlag(used[Index(m.faceVertices[i])]); }, 4096);
     at = firstFault(used.size(), [&](Index p) { return used[p] == 0; });
     if (at < used.size()) return fmt::format("point {} is used by no face", at);
     return {};

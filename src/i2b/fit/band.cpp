@@ -1,9 +1,11 @@
 #include "i2b/fit/band.h"
+#include "i2b/core/flags.h"
 #include "i2b/core/rows.h"
 #include "i2b/fit/band_marks.h"
 #include "i2b/fit/band_pieces.h"
 #include <algorithm>
 #include <atomic>
+#include <memory>
 
 namespace i2b {
 namespace {
@@ -35,7 +37,7 @@ Csr<std::int32_t> rowsOfCorners(const Band& band, std::size_t rows, std::size_t 
     });
 }
 
-// The same edges from both ends, by node and by other end; make(a, b) gives the edge.
+// The edges, once each, from both ends, by node and by other end; make(a, b) gives the edge.
 template <class Make>
 Csr<BandEdge> edgesOf(std::size_t rows, const std::vector<BandPieces>& pieces, const Make& make) {
     std::vector<std::int64_t> next(rows + 1, 0);
@@ -49,7 +51,7 @@ Csr<BandEdge> edgesOf(std::size_t rows, const std::vector<BandPieces>& pieces, c
     RawVector<std::int32_t> other(static_cast<std::size_t>(exclusiveScan(next)));
     const std::vector<std::int64_t> first = next;
     forEdges([&](std::uint32_t a, std::uint32_t b) { other[static_cast<std::size_t>(raise(next[a]))] = static_cast<std::int32_t>(b); });
-    Csr<BandEdge> edges; // pieces share edges: each once
+    Csr<BandEdge> edges;
     edges.start.assign(rows + 1, 0);
     parallelFor(rows, [&](std::size_t r) {
         std::int32_t* const begin = other.data() + first[r];
@@ -84,8 +86,8 @@ void addPrisms(Band& band, const Front& front) {
     const std::size_t faces = front.ownerCell.size();
     std::vector<BandPieces> pieces((faces + 2047) / 2048);
     parallelChunks(faces, 2048, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        pieces[chunk].corners.reserve(8 * (end - begin)), pieces[chunk].edges.reserve(4 * (end - begin));
         for (std::size_t f = begin; f < end; ++f) addPrism(band, front, f, pieces[chunk]);
-        pieces[chunk].settle();
     });
     appendCorners(band, pieces);
     // In a row the core's corners come first: those of the prisms that were there before are left out.
@@ -237,15 +239,16 @@ Band buildBand(const LatticeMesh& mesh, const Front& front, int rings, const Wan
         pieces.resize(before + (cells.leafCount() + 15) / 16);
         parallelChunks(cells.leafCount(), 16, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
             LatticeMesh::Reader reader(mesh);
-            std::vector<CellVertex> vertices;
+            const auto room = std::make_unique<CoreCellRoom>();
             for (std::size_t i = begin; i < end; ++i) {
                 auto rank = static_cast<std::size_t>(cells.leafFirst(i));
+                if (!anyFlag(marks.cells, rank, rank + static_cast<std::size_t>(bits::count(leafBits(&cells.leaf(i)))))) continue;
+                room->enterNode();
                 const Index3 o = toIndex(cells.leaf(i).origin());
                 bits::forEach(leafBits(&cells.leaf(i)), [&](int x, int y, int z) {
-                    if (marks.cells[rank++]) addCoreCell(band, reader, l, {o[0] + x, o[1] + y, o[2] + z}, nodeOf, vertices, pieces[before + chunk]);
+                    if (marks.cells[rank++]) addCoreCell(band, reader, l, {o[0] + x, o[1] + y, o[2] + z}, nodeOf, *room, pieces[before + chunk]);
                 });
             }
-            pieces[before + chunk].settle();
         });
     }
     appendCorners(band, pieces, 2 * front.mesh.n_halfedges() * 5 / 4); // those of the prisms, of vertices put in later, too

@@ -1,6 +1,7 @@
 #include "i2b/fit/band_marks.h"
 #include "i2b/core/parallel.h"
 #include <atomic>
+#include <cstring>
 
 namespace i2b {
 namespace {
@@ -12,19 +13,20 @@ void set(std::uint8_t& mark, std::uint8_t value) {
     while ((old == 0 || old > value) && !m.compare_exchange_weak(old, value, std::memory_order_relaxed)) {}
 }
 
-// f(level, coordinates, rank) for marked bits of ranked masks, leaf-parallel, one Reader a chunk.
+// f(reader, level, coordinates) for the bits of ranked masks that bear one mark, leaf-parallel, one Reader a chunk. Most leaves
+// have none.
 template <class Ranked, class F>
-void forMarked(const LatticeMesh& mesh, int levels, const Ranked& rankedOf, const std::vector<std::uint8_t>& marks, const F& f) {
+void forMarked(const LatticeMesh& mesh, int levels, const Ranked& rankedOf, const std::vector<std::uint8_t>& marks, std::uint8_t mark, const F& f) {
     for (int l = 0; l < levels; ++l) {
         const RankedMask& ranked = rankedOf(l);
         parallelChunks(ranked.leafCount(), 16, [&](std::size_t begin, std::size_t end, std::size_t) {
             LatticeMesh::Reader reader(mesh);
             for (std::size_t i = begin; i < end; ++i) {
                 auto rank = static_cast<std::size_t>(ranked.leafFirst(i));
+                if (!std::memchr(marks.data() + rank, mark, static_cast<std::size_t>(bits::count(leafBits(&ranked.leaf(i)))))) continue;
                 const Index3 o = toIndex(ranked.leaf(i).origin());
                 bits::forEach(leafBits(&ranked.leaf(i)), [&](int x, int y, int z) {
-                    if (marks[rank]) f(reader, l, Index3{o[0] + x, o[1] + y, o[2] + z}, rank);
-                    ++rank;
+                    if (marks[rank++] == mark) f(reader, l, Index3{o[0] + x, o[1] + y, o[2] + z});
                 });
             }
         });
@@ -44,18 +46,14 @@ BandMarks markBand(const LatticeMesh& mesh, int rings) {
     });
     for (int ring = 0; ring <= rings; ++ring) {
         const auto now = static_cast<std::uint8_t>(ring + 1);
-        const std::vector<std::uint8_t> before = marks.points;
-        forMarked(mesh, mesh.pointLevels(), [&](int l) -> const RankedMask& { return mesh.points(l); }, before,
-                  [&](LatticeMesh::Reader& reader, int l, const Index3& v, std::size_t rank) {
-                      if (before[rank] != now) return;
+        forMarked(mesh, mesh.pointLevels(), [&](int l) -> const RankedMask& { return mesh.points(l); }, marks.points, now,
+                  [&](LatticeMesh::Reader& reader, int l, const Index3& v) {
                       reader.cellsAround(l, v, [&](int cl, const Index3& c) {
                           set(marks.cells[static_cast<std::size_t>(reader.cell(cl, c))], now);
                       });
                   });
-        const std::vector<std::uint8_t> cells = marks.cells;
-        forMarked(mesh, mesh.levels(), [&](int l) -> const RankedMask& { return mesh.cells(l); }, cells,
-                  [&](LatticeMesh::Reader& reader, int l, const Index3& c, std::size_t rank) {
-                      if (cells[rank] != now) return;
+        forMarked(mesh, mesh.levels(), [&](int l) -> const RankedMask& { return mesh.cells(l); }, marks.cells, now,
+                  [&](LatticeMesh::Reader& reader, int l, const Index3& c) {
                       if (std::array<std::int32_t, 8> corners; reader.corners(l, c, corners)) {
                           for (const std::int32_t p : corners) set(marks.points[static_cast<std::size_t>(p)], static_cast<std::uint8_t>(now + 1));
                           return;

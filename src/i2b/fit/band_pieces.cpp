@@ -5,13 +5,6 @@
 namespace i2b {
 namespace {
 
-template <class T>
-void dropRepeats(std::vector<T>& list) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    list.shrink_to_fit();
-}
-
 std::size_t vertexOf(std::vector<CellVertex>& list, std::int32_t node) {
     for (std::size_t i = 0; i < list.size(); ++i) {
         if (list[i].node == node) return i;
@@ -33,7 +26,9 @@ double stretch(const Vec3& size, const Vec3& normal) {
 }
 
 // A cell with eight vertices, in the order in which its faces name them.
-void addBox(const Band& band, const std::array<std::int32_t, 8>& nodes, BandPieces& out) {
+void addBox(const Band& band, const Index3& c, const std::array<std::int32_t, 8>& nodes, CoreCellRoom& room, BandPieces& out) {
+    const Index3 low{c[0] & 7, c[1] & 7, c[2] & 7};
+    const auto end = [&](std::size_t k) { return Index3{low[0] + int(k & 1), low[1] + int(k >> 1 & 1), low[2] + int(k >> 2)}; };
     for (const std::size_t k : {0u, 4u, 6u, 2u, 1u, 3u, 7u, 5u}) {
         const Vec3& x = band.start[static_cast<std::size_t>(nodes[k])];
         Corner corner{{nodes[k], -1, -1, -1}, {}, 1};
@@ -41,7 +36,9 @@ void addBox(const Band& band, const std::array<std::int32_t, 8>& nodes, BandPiec
             const std::int32_t n = nodes[k ^ std::size_t(1) << axis];
             corner.node[axis + 1] = n;
             corner.inverseLength[axis] = static_cast<float>(1 / norm(band.start[static_cast<std::size_t>(n)] - x));
-            if (n > nodes[k]) out.edges.push_back(edgeKey(nodes[k], n));
+            if (n <= nodes[k]) continue;
+            const std::uint64_t key = edgeKey(nodes[k], n);
+            if (room.isNew(end(k & ~(std::size_t(1) << axis)), axis, key)) out.edges.push_back(key);
         }
         if (std::popcount(k) % 2 != 0) std::swap(corner.node[1], corner.node[2]), std::swap(corner.inverseLength[0], corner.inverseLength[1]);
         out.corners.push_back(corner);
@@ -50,19 +47,14 @@ void addBox(const Band& band, const std::array<std::int32_t, 8>& nodes, BandPiec
 
 } // namespace
 
-void BandPieces::settle() {
-    dropRepeats(edges);
-    std::sort(hanging.begin(), hanging.end());
-    hanging.erase(std::unique(hanging.begin(), hanging.end(), sameNode), hanging.end());
-}
-
 void addCoreCell(const Band& band, LatticeMesh::Reader& reader, int level, const Index3& c,
-                 const std::vector<std::int32_t>& nodeOf, std::vector<CellVertex>& vertices, BandPieces& out) {
+                 const std::vector<std::int32_t>& nodeOf, CoreCellRoom& room, BandPieces& out) {
     if (std::array<std::int32_t, 8> nodes; reader.corners(level, c, nodes)) {
         for (std::int32_t& n : nodes) n = nodeOf[static_cast<std::size_t>(n)];
-        addBox(band, nodes, out);
+        addBox(band, c, nodes, room, out);
         return;
     }
+    std::vector<CellVertex>& vertices = room.vertices;
     vertices.clear();
     reader.faces(level, c, [&](const CellFace& face) {
         for (std::size_t i = 0; i < face.vertices; ++i) {

@@ -8,7 +8,6 @@
 
 namespace i2b {
 
-
 using Hanging = std::pair<std::int32_t, std::array<std::int32_t, 4>>; // a node and its parents, -1 filled
 inline bool sameNode(const Hanging& a, const Hanging& b) { return a.first == b.first; }
 
@@ -18,11 +17,8 @@ constexpr std::uint64_t edgeKey(std::int32_t a, std::int32_t b) { return std::ui
 // What some cells contribute.
 struct BandPieces {
     std::vector<Corner> corners;
-    std::vector<std::uint64_t> edges; // the lower node first
+    std::vector<std::uint64_t> edges; // the lower node first; some more than once
     std::vector<Hanging> hanging;
-
-    // Four cells share an edge: what is alike goes before the pieces are put together.
-    void settle();
 };
 
 // A core cell's vertices with their neighbours along its edges: six slots, 2 * axis (+ 1 for the positive direction).
@@ -31,9 +27,24 @@ struct CellVertex {
     std::array<std::int32_t, 6> next{-1, -1, -1, -1, -1, -1};
 };
 
-// band: nodes numbered and placed. nodeOf: per point of the lattice mesh its node; vertices: room to work in.
-void addCoreCell(const Band& band, LatticeMesh::Reader& reader, int level, const Index3& c,
-                 const std::vector<std::int32_t>& nodeOf, std::vector<CellVertex>& vertices, BandPieces& out);
+// Room to work in for the cells of a node of the mask (8^3 of them), one after the other. Four cells share an edge: it is passed on
+// once where they are boxes.
+struct CoreCellRoom {
+    std::vector<CellVertex> vertices;
+    std::array<std::uint64_t, 3 * 9 * 9 * 9> edges{}; // keys, by the lower end in the node and the axis
+
+    void enterNode() { edges.fill(0); }
+    bool isNew(const Index3& end, std::size_t axis, std::uint64_t key) {
+        std::uint64_t& seen = edges[static_cast<std::size_t>((end[0] * 9 + end[1]) * 9 + end[2]) * 3 + axis];
+        if (seen == key) return false;
+        seen = key;
+        return true;
+    }
+};
+
+// band: nodes numbered and placed. nodeOf: per point of the lattice mesh its node.
+void addCoreCell(const Band& band, LatticeMesh::Reader& reader, int level, const Index3& c, const std::vector<std::int32_t>& nodeOf, CoreCellRoom& room,
+                 BandPieces& out);
 
 // The prism on face f of the front.
 void addPrism(const Band& band, const Front& front, std::size_t f, BandPieces& out);

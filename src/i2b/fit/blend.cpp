@@ -1,8 +1,7 @@
-#include "i2b/core/parallel.h"
+#include "i2b/core/flags.h"
 #include "i2b/fit/corner.h"
 #include "i2b/fit/fit.h"
 #include <algorithm>
-#include <atomic>
 #include <functional>
 
 namespace i2b {
@@ -15,25 +14,25 @@ constexpr int gentleRounds = 30;    // after these only inverted corners count, 
 
 // How far each movable node has come, and what follows from changes that nobody has looked at yet.
 struct Progress {
+    const Band& band;
     std::vector<double> alpha;
     std::vector<std::uint8_t> untold;  // lowered, and its neighbours have not been bounded by it
     std::vector<std::uint8_t> unplaced; // lowered since the nodes were placed
     std::vector<std::uint8_t> moved;   // when they were placed last
     std::vector<std::uint8_t> marked;  // of bad corners, or beside lowered ones; those who ask take it off
+    std::vector<std::uint8_t> uneven;  // per fan: a node of it was lowered since they agreed
 
-    explicit Progress(std::size_t movable) : alpha(movable, 1), untold(movable, 0), unplaced(movable, 1), moved(movable, 0), marked(movable, 0) {}
+    explicit Progress(const Band& b)
+        : band(b), alpha(b.movable, 1), untold(b.movable, 0), unplaced(b.movable, 1), moved(b.movable, 0), marked(b.movable, 0), uneven(b.fronts, 0) {}
     void mark(std::int32_t n) {
-        if (static_cast<std::size_t>(n) < marked.size()) std::atomic_ref<std::uint8_t>(marked[static_cast<std::size_t>(n)]).store(1, std::memory_order_relaxed);
-    }
-    bool takeMark(std::size_t n) {
-        if (!marked[n]) return false;
-        marked[n] = 0;
-        return true;
+        if (static_cast<std::size_t>(n) < marked.size()) setFlag(marked[static_cast<std::size_t>(n)]);
     }
     void lower(std::size_t n, double to) {
         if (!(to < alpha[n])) return;
         alpha[n] = to;
         untold[n] = unplaced[n] = 1;
+        if (n < band.walls) setFlag(uneven[static_cast<std::size_t>(band.frontNode[n]) - band.walls]);
+        else if (n < band.walls + band.fronts) setFlag(uneven[n - band.walls]);
     }
 };
 
@@ -46,8 +45,6 @@ TraceAndDet lookAt(const Corner& c, const std::vector<Vec3>& x) {
     const double i1 = double(c.inverseLength[0]), i2 = double(c.inverseLength[1]), i3 = double(c.inverseLength[2]);
     return {norm2(e1) * i1 * i1 + norm2(e2) * i2 * i2 + norm2(e3) * i3 * i3, dot(cross(e1, e2), e3) * i1 * i2 * i3};
 }
-
-void mark(std::uint8_t& flag) { std::atomic_ref<std::uint8_t>(flag).store(1, std::memory_order_relaxed); } // all set the same
 
 // Marks the nodes of bad corners. Only corners with a node that has moved since the last round are judged again: where
 // many have, all corners in turn, else those of the nodes that have, each at the first such node.
@@ -68,8 +65,7 @@ void markBadCorners(const Band& band, const std::vector<Vec3>& x, double limit, 
         }, 1024);
         return;
     }
-    parallelFor(band.movable, [&](std::size_t n) {
-        if (!progress.moved[n]) return;
+    forFlagged(progress.moved, [&](std::size_t n) {
         for (std::int32_t c : band.cornersOf[n]) {
             const Corner& corner = band.corners[static_cast<std::size_t>(c)];
             const std::int32_t first = *std::find_if(corner.node.begin(), corner.node.end(), isMoved);
@@ -82,11 +78,12 @@ void markBadCorners(const Band& band, const std::vector<Vec3>& x, double limit, 
 bool stepBackBad(const Band& band, const std::vector<Vec3>& x, double limit, double step, Progress& progress) {
     markBadCorners(band, x, limit, progress);
     std::uint8_t changed = 0;
-    parallelFor(band.movable, [&](std::size_t n) {
-        if (!progress.takeMark(n) || progress.alpha[n] <= 0) return;
+    forFlagged(progress.marked, [&](std::size_t n) {
+        progress.marked[n] = 0;
+        if (progress.alpha[n] <= 0) return;
         progress.lower(n, std::max(0.0, progress.alpha[n] - step));
-        mark(changed);
-    }, 4096);
+        setFlag(changed);
+    });
     return changed != 0;
 }
 
@@ -95,39 +92,38 @@ bool stepBackBad(const Band& band, const std::vector<Vec3>& x, double limit, dou
 void spread(const Band& band, Progress& progress) {
     RawVector<double> bound(band.movable);
     for (int round = 0; round < 4; ++round) {
-        parallelFor(band.movable, [&](std::size_t n) {
-            if (!progress.untold[n]) return;
+        forFlagged(progress.untold, [&](std::size_t n) {
             for (const BandEdge& e : band.edges[n]) progress.mark(e.b);
             progress.untold[n] = 0;
-        }, 1024);
-        parallelFor(band.movable, [&](std::size_t n) {
-            if (!progress.marked[n]) return;
+        });
+        forFlagged(progress.marked, [&](std::size_t n) {
             double a = progress.alpha[n];
             for (const BandEdge& e : band.edges[n]) {
                 const auto b = static_cast<std::size_t>(e.b);
                 if (b < band.movable) a = std::min(a, progress.alpha[b] + slope);
             }
             bound[n] = a;
-        }, 1024);
-        parallelFor(band.movable, [&](std::size_t n) {
-            if (progress.takeMark(n)) progress.lower(n, bound[n]);
-        }, 4096);
-        parallelFor(band.fronts, [&](std::size_t i) {
+        });
+        forFlagged(progress.marked, [&](std::size_t n) {
+            progress.marked[n] = 0;
+            progress.lower(n, bound[n]);
+        });
+        forFlagged(progress.uneven, [&](std::size_t i) {
             for (std::int32_t b : band.fansOf[i]) progress.lower(band.walls + i, progress.alpha[static_cast<std::size_t>(b)]);
             for (std::int32_t b : band.fansOf[i]) progress.lower(static_cast<std::size_t>(b), progress.alpha[band.walls + i]);
-        }, 1024);
+            progress.uneven[i] = 0;
+        });
     }
 }
 
-void place(const Band& band, const std::vector<Vec3>& start, const std::vector<Vec3>& goal, Progress& progress, std::vector<Vec3>& x) {
-    parallelFor(band.movable, [&](std::size_t n) {
-        progress.moved[n] = 0;
-        if (!progress.unplaced[n]) return;
+void place(const std::vector<Vec3>& start, const std::vector<Vec3>& goal, Progress& progress, std::vector<Vec3>& x) {
+    std::fill(progress.moved.begin(), progress.moved.end(), std::uint8_t(0));
+    forFlagged(progress.unplaced, [&](std::size_t n) {
         const Vec3 to = start[n] + (goal[n] - start[n]) * progress.alpha[n];
         progress.moved[n] = !(to == x[n]);
         progress.unplaced[n] = 0;
         x[n] = to;
-    }, 1024);
+    });
 }
 
 } // namespace
@@ -148,16 +144,16 @@ std::vector<std::uint8_t> nodesOfPoorCorners(const Band& band, const std::vector
     std::vector<std::uint8_t> poor(band.nodes(), 0);
     parallelFor(band.corners.size(), [&](std::size_t c) {
         if (const TraceAndDet look = lookAt(band.corners[c], x); !energyExceeds(look.trace, look.det, limit)) return;
-        for (std::int32_t n : band.corners[c].node) mark(poor[static_cast<std::size_t>(n)]);
+        for (std::int32_t n : band.corners[c].node) setFlag(poor[static_cast<std::size_t>(n)]);
     });
     poor.resize(band.movable);
     return poor;
 }
 
 std::vector<double> blend(const Band& band, const std::vector<Vec3>& start, const std::vector<Vec3>& goal, std::vector<Vec3>& x) {
-    Progress progress(band.movable);
+    Progress progress(band);
     x = start;
-    place(band, start, goal, progress, x);
+    place(start, goal, progress, x);
     for (int round = 0;; ++round) {
         const bool gentle = round < gentleRounds;
         if (round == gentleRounds) std::fill(progress.moved.begin(), progress.moved.end(), std::uint8_t(1)); // judged by another limit now
@@ -169,7 +165,7 @@ std::vector<double> blend(const Band& band, const std::vector<Vec3>& start, cons
             continue;
         }
         if (gentle) spread(band, progress);
-        place(band, start, goal, progress, x);
+        place(start, goal, progress, x);
     }
     return progress.alpha;
 }

@@ -49,8 +49,7 @@ void forNodesAround(const Band& band, std::size_t n, const F& f) {
 
 NodeBlocks::NodeBlocks(const Band& band) {
     gather(band);
-    order(band);
-    colour(band);
+    colour(order(band));
     blockOf_ = {};
 }
 
@@ -78,16 +77,19 @@ void NodeBlocks::gather(const Band& band) {
     });
 }
 
-// By kind, then by colour: those of one share no corner.
-void NodeBlocks::order(const Band& band) {
+// By kind, then by colour: those of one share no corner. Gives the blocks beside each, in the order in which they are met.
+std::vector<std::vector<std::uint32_t>> NodeBlocks::order(const Band& band) {
     std::vector<std::uint8_t> colourOf(band.movable, none);
+    std::vector<std::vector<std::uint32_t>> beside(size());
     const auto rank = [&](std::int32_t n) { return std::pair(kindOf(band, static_cast<std::size_t>(n)), colourOf[static_cast<std::size_t>(n)]); };
     parallelFor(size(), [&](std::size_t b) {
         const std::span<std::int32_t> nodes = all(b);
         for (const std::int32_t n : nodes) {
             std::uint64_t used = 0;
             forNodesAround(band, static_cast<std::size_t>(n), [&](std::size_t m) {
-                if (blockOf_[m] == b && colourOf[m] != none) used |= std::uint64_t(1) << colourOf[m];
+                const std::uint32_t other = blockOf_[m];
+                if (other == b) used |= colourOf[m] != none ? std::uint64_t(1) << colourOf[m] : 0;
+                else if (std::ranges::find(beside[b], other) == beside[b].end()) beside[b].push_back(other);
             });
             colourOf[static_cast<std::size_t>(n)] = static_cast<std::uint8_t>(std::min(63, std::countr_one(used)));
         }
@@ -97,20 +99,11 @@ void NodeBlocks::order(const Band& band) {
             kindFrom_[b][kind] = kindFrom_[b].front() + static_cast<std::size_t>(at - nodes.begin());
         }
     }, 1);
+    return beside;
 }
 
 // Greedy, in order.
-void NodeBlocks::colour(const Band& band) {
-    std::vector<std::vector<std::uint32_t>> beside(size());
-    parallelFor(size(), [&](std::size_t b) {
-        std::vector<std::uint32_t>& found = beside[b];
-        for (const std::int32_t n : all(b)) {
-            forNodesAround(band, static_cast<std::size_t>(n), [&](std::size_t m) {
-                const std::uint32_t other = blockOf_[m];
-                if (other != b && std::ranges::find(found, other) == found.end()) found.push_back(other);
-            });
-        }
-    }, 1);
+void NodeBlocks::colour(const std::vector<std::vector<std::uint32_t>>& beside) {
     std::vector<std::uint32_t> colourOf(size(), ~0u);
     std::vector<std::uint8_t> taken;
     for (std::size_t b = 0; b < size(); ++b) {

@@ -34,8 +34,8 @@ class NodeBlocks {
 
   private:
     void gather(const Band& band);
-    void order(const Band& band);
-    void colour(const Band& band);
+    std::vector<std::vector<std::uint32_t>> order(const Band& band);
+    void colour(const std::vector<std::vector<std::uint32_t>>& beside);
     std::span<std::int32_t> all(std::size_t block) { return {nodes_.data() + kindFrom_[block].front(), nodes_.data() + kindFrom_[block].back()}; }
 
     std::vector<std::int32_t> nodes_;                     // block by block, kind by kind

@@ -1,6 +1,7 @@
 #include "i2b/fit/crossings.h"
 #include "i2b/core/collect.h"
 #include "i2b/core/parallel.h"
+#include "i2b/fit/wall_views.h"
 #include <algorithm>
 
 namespace i2b {
@@ -190,12 +191,14 @@ EdgeCrossing Finder::on(std::int32_t edge) const {
 
 } // namespace
 
-WallMarks markWall(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x,
+WallMarks markWall(WallViews& views, const FeatureIndex& features, const std::vector<Vec3>& x,
                    const std::vector<Snap>& snaps) {
+    const Band& band = views.band();
+    const SurfaceIndex& index = views.index();
     WallMarks marks;
     marks.feet.resize(band.walls), marks.onLine.assign(band.walls, 0), marks.tangents.resize(band.walls);
     parallelFor(band.walls, [&](std::size_t n) {
-        marks.feet[n] = footOf(band, index, x, n);
+        marks.feet[n] = views.foot(n, x);
         if (snaps[n].kind == SnapKind::none) {
             const FeatureIndex::Line line = lineUpon(features, x[n], band.h[n]);
             if (line.found && marks.feet[n].found) marks.onLine[n] = 1, marks.tangents[n] = line.tangent;

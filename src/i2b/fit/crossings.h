@@ -13,7 +13,7 @@ struct WallMarks {
     std::vector<Vec3> tangents;         // unit, of the line that it is held to; zero: none, or a corner
 };
 
-WallMarks markWall(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x,
+WallMarks markWall(WallViews& views, const FeatureIndex& features, const std::vector<Vec3>& x,
                    const std::vector<Snap>& snaps);
 
 struct EdgeCrossing {

@@ -1,6 +1,6 @@
 #include "i2b/core/parallel.h"
 #include "i2b/fit/corner.h"
-#include "i2b/fit/fit.h"
+#include "i2b/fit/wall_views.h"
 #include "i2b/fit/local_corners.h"
 #include <Eigen/Dense>
 #include <algorithm>
@@ -40,17 +40,18 @@ WallTerm wayOut(const Band& band, const SurfaceIndex& index, const std::vector<V
 }
 
 // The plane of a wall node's target, or the line or point that it is snapped to.
-WallTerm wallTerm(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const Snap& snap, const std::vector<Vec3>& x,
+WallTerm wallTerm(WallViews& views, const FeatureIndex& features, const Snap& snap, const std::vector<Vec3>& x,
                   std::size_t n, double weight) {
+    const double h = views.band().h[n];
     WallTerm term;
-    term.inverseH = 1 / band.h[n];
+    term.inverseH = 1 / h;
     term.weight = weight;
     if (snap.kind == SnapKind::none) {
-        const WallTarget target = wallTarget(index, band, n, x[static_cast<std::size_t>(band.frontNode[n])], x[n]);
+        const WallTarget& target = views.target(n, x);
         if (target.found) term.add(target.normal, x[n] - target.point);
         return term;
     }
-    const FeatureIndex::Line line = snapLine(index, features, snap, x[n], band.h[n]);
+    const FeatureIndex::Line line = snapLine(views.index(), features, snap, x[n], h);
     const Vec3 way = x[n] - line.point;
     if (snap.kind == SnapKind::corner) {
         term.add({1, 0, 0}, way), term.add({0, 1, 0}, way), term.add({0, 0, 1}, way);
@@ -152,8 +153,10 @@ bool pathsStayFree(const Band& band, const SurfaceIndex& index, const std::vecto
 
 } // namespace
 
-bool minimiseEnergy(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Snap>& snaps,
+bool minimiseEnergy(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps,
                     const std::vector<std::uint8_t>& active, std::vector<Vec3>& x, const EnergyOptions& options, const Context& context) {
+    const Band& band = views.band();
+    const SurfaceIndex& index = views.index();
     std::vector<Floor> floors(band.walls);
     const auto moveOne = [&](std::size_t n, double lambda, LocalCorners& corners) {
         corners.gather(band, n, x);
@@ -163,7 +166,7 @@ bool minimiseEnergy(const Band& band, const SurfaceIndex& index, const FeatureIn
             // Nodes on features may be in poorer corners: a sharp edge asks for them.
             const double floor = snaps[n].kind == SnapKind::none ? options.floor : options.featureFloor;
             if (lambda > 5) floors[n].update(corners.worstScaledJacobian(), floor);
-            wall = wallTerm(band, index, features, snaps[n], x, n, lambda * floors[n].factor);
+            wall = wallTerm(views, features, snaps[n], x, n, lambda * floors[n].factor);
         }
         if (n >= band.walls && n < band.walls + band.fronts && band.behind[n - band.walls]) wall = wayOut(band, index, x, n, lambda);
         Vec3 d = bestMove(corners, wall, band.outside[n], options.cap * band.h[n], options.newtonSteps);

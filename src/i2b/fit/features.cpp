@@ -1,7 +1,7 @@
 #include "i2b/fit/features.h"
 #include "i2b/core/collect.h"
 #include "i2b/fit/between.h"
-#include "i2b/fit/fit.h"
+#include "i2b/fit/wall_views.h"
 #include "i2b/front/replace_faces.h"
 #include <algorithm>
 #include <set>
@@ -266,10 +266,12 @@ FeatureIndex::Line lineUpon(const FeatureIndex& features, const Vec3& x, double 
     return line.found && !line.isRim && !features.hasOtherBeside(line, alone * h, aside * h) ? line : FeatureIndex::Line{};
 }
 
-std::size_t snapToFeatures(const Band& band, const Front& front, const SurfaceIndex& index, const FeatureIndex& features,
+std::size_t snapToFeatures(WallViews& views, const Front& front, const FeatureIndex& features,
                            const std::vector<Vec3>& x, std::vector<Snap>& snaps) {
+    const Band& band = views.band();
+    const SurfaceIndex& index = views.index();
     std::vector<Foot> feet(band.walls);
-    parallelFor(band.walls, [&](std::size_t n) { feet[n] = footOf(band, index, x, n); });
+    parallelFor(band.walls, [&](std::size_t n) { feet[n] = views.foot(n, x); });
     std::size_t added = snapCorners(band, index, features, feet, x, snaps);
     const EdgeLook look{band, index, features, x, feet, snaps};
     RawVector<Crossing> crossings = collect<Crossing>(front.mesh.n_edges(), [&](std::size_t e, const auto& put) {

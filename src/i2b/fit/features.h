@@ -13,6 +13,8 @@
 
 namespace i2b {
 
+class WallViews;
+
 // Closest line (an edge of lineKinds) and closest corner of a feature graph.
 class FeatureIndex {
   public:
@@ -55,7 +57,7 @@ FeatureIndex::Line lineUpon(const FeatureIndex& features, const Vec3& x, double 
 
 // Snaps further nodes, nearest crossings first, one end of an edge at most; those already in snaps stay.
 // Gives how many were added.
-std::size_t snapToFeatures(const Band& band, const Front& front, const SurfaceIndex& index, const FeatureIndex& features,
+std::size_t snapToFeatures(WallViews& views, const Front& front, const FeatureIndex& features,
                            const std::vector<Vec3>& x, std::vector<Snap>& snaps);
 
 // Splits quads of the front whose diagonal is snapped and whose other two nodes lie on different sides. Front

@@ -7,6 +7,7 @@
 #include "i2b/fit/folds.h"
 #include "i2b/fit/insert.h"
 #include "i2b/fit/off_wall.h"
+#include "i2b/fit/wall_views.h"
 #include <algorithm>
 #include <array>
 #include <numeric>
@@ -35,18 +36,18 @@ void grow(const Band& band, std::vector<std::uint8_t>& marked, int rings) {
 }
 
 // How far a wall node is from where it should be: on the line or corner that it is snapped to, else on the surface.
-double wayToGo(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const Snap& snap, const std::vector<Vec3>& x, std::size_t n) {
-    if (snap.kind != SnapKind::none) return norm(snapLine(index, features, snap, x[n], band.h[n]).point - x[n]);
-    const WallTarget t = wallTarget(index, band, n, x[static_cast<std::size_t>(band.frontNode[n])], x[n]);
+double wayToGo(WallViews& views, const FeatureIndex& features, const Snap& snap, const std::vector<Vec3>& x, std::size_t n) {
+    if (snap.kind != SnapKind::none) return norm(snapLine(views.index(), features, snap, x[n], views.band().h[n]).point - x[n]);
+    const WallTarget& t = views.target(n, x);
     return t.found ? norm(t.point - x[n]) : 0;
 }
 
 // Nodes off their target, snapped or in a poor corner, and those around them.
-std::vector<std::uint8_t> activeNodes(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Snap>& snaps,
-                                      const std::vector<Vec3>& x) {
+std::vector<std::uint8_t> activeNodes(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps, const std::vector<Vec3>& x) {
+    const Band& band = views.band();
     std::vector<std::uint8_t> active = nodesOfPoorCorners(band, x, poorEnergy);
     parallelFor(band.walls, [&](std::size_t n) {
-        active[n] = active[n] || snaps[n].kind != SnapKind::none || wayToGo(band, index, features, snaps[n], x, n) > offTarget * band.h[n];
+        active[n] = active[n] || snaps[n].kind != SnapKind::none || wayToGo(views, features, snaps[n], x, n) > offTarget * band.h[n];
     });
     grow(band, active, 1);
     return active;
@@ -67,13 +68,14 @@ bool foldsBack(const Band& band, const SurfaceIndex& index, const std::vector<Ve
 }
 
 // Those of some wall nodes that are not where they should be, and may go on.
-std::vector<std::uint32_t> unfinishedOf(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Snap>& snaps,
-                                        const std::vector<Vec3>& x, const std::vector<std::uint32_t>& nodes) {
+std::vector<std::uint32_t> unfinishedOf(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps, const std::vector<Vec3>& x,
+                                        const std::vector<std::uint32_t>& nodes) {
+    const Band& band = views.band();
     std::vector<std::uint8_t> isOff(nodes.size(), 0);
     parallelFor(nodes.size(), [&](std::size_t i) {
         const std::size_t n = nodes[i];
-        isOff[i] = wayToGo(band, index, features, snaps[n], x, n) > unfinished * band.h[n] &&
-                   (snaps[n].kind != SnapKind::line || foldsBack(band, index, x, n));
+        isOff[i] = wayToGo(views, features, snaps[n], x, n) > unfinished * band.h[n] &&
+                   (snaps[n].kind != SnapKind::line || foldsBack(band, views.index(), x, n));
     });
     std::vector<std::uint32_t> off;
     for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -84,17 +86,18 @@ std::vector<std::uint32_t> unfinishedOf(const Band& band, const SurfaceIndex& in
 // At rims and in narrow places nodes come a little way in a sweep: these, a few in a hundred, go on with those around them, with
 // the weights of the last one.
 // Gives whether all sweeps were within the budget.
-bool finish(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Snap>& snaps, std::vector<Vec3>& x,
-            const EnergyOptions& energy, const Context& context) {
+bool finish(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps, std::vector<Vec3>& x, const EnergyOptions& energy,
+            const Context& context) {
+    const Band& band = views.band();
     std::vector<std::uint32_t> off(band.walls);
     std::iota(off.begin(), off.end(), 0);
     for (int sweep = 0; sweep < finishingSweeps; ++sweep) {
-        off = unfinishedOf(band, index, features, snaps, x, off);
+        off = unfinishedOf(views, features, snaps, x, off);
         if (off.empty()) break;
         std::vector<std::uint8_t> around(band.movable, 0);
         for (const std::uint32_t n : off) around[n] = 1;
         grow(band, around, 1);
-        if (!minimiseEnergy(band, index, features, snaps, around, x, energy, context)) return false;
+        if (!minimiseEnergy(views, features, snaps, around, x, energy, context)) return false;
     }
     return true;
 }
@@ -152,12 +155,12 @@ bool hasLineBeside(const Front& front, const std::vector<Snap>& snaps, std::size
 }
 
 // Nodes that should be on a feature besides, and vertices where edges still cross one.
-void seekOnce(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features, std::vector<Vec3>& x,
-              std::vector<Snap>& snaps, FitSummary& summary) {
+void seekOnce(Front& front, WallViews& views, const FeatureIndex& features, std::vector<Vec3>& x, std::vector<Snap>& snaps, FitSummary& summary) {
+    const Band& band = views.band();
     summary.wishes = snaps;
-    snapToFeatures(band, front, index, features, x, summary.wishes);
-    snapFolds(band, front, index, features, x, summary.wishes);
-    summary.inserted = insertVertices(front, band, index, features, x, snaps);
+    snapToFeatures(views, front, features, x, summary.wishes);
+    snapFolds(band, front, views.index(), features, x, summary.wishes);
+    summary.inserted = insertVertices(front, views, features, x, snaps);
     summary.wishes.resize(snaps.size());
     parallelFor(band.walls, [&](std::size_t n) {
         if (summary.wishes[n].kind != SnapKind::none || hasLineBeside(front, snaps, n)) return;
@@ -190,15 +193,16 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     for (std::size_t v = 0; v < band.walls; ++v) summary.blended += alpha[v] == 1;
 
     const FeatureIndex features(graph);
+    WallViews views(band, index);
     std::vector<Snap> snaps(band.walls);
-    std::vector<std::uint8_t> active = activeNodes(band, index, features, snaps, x);
+    std::vector<std::uint8_t> active = activeNodes(views, features, snaps, x);
     const auto pull = [&](std::vector<double> weights) {
         energy.wallWeights = std::move(weights);
-        if (!minimiseEnergy(band, index, features, snaps, active, x, energy, context)) summary.cutShort = true;
+        if (!minimiseEnergy(views, features, snaps, active, x, energy, context)) summary.cutShort = true;
     };
     const auto snap = [&] {
         if (!options.features || energy.budget.isOver()) return false;
-        snapToFeatures(band, front, index, features, x, snaps);
+        snapToFeatures(views, front, features, x, snaps);
         snapFolds(band, front, index, features, x, snaps);
         return true;
     };
@@ -211,23 +215,23 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     };
     pull({0.1, 10, 100});
     snap();
-    active = activeNodes(band, index, features, snaps, x);
+    active = activeNodes(views, features, snaps, x);
     pull({1e3});
     snapAndSplit();
-    active = activeNodes(band, index, features, snaps, x);
+    active = activeNodes(views, features, snaps, x);
     pull({1e5});
     snapAndSplit(); // what has come into view since
-    const std::vector<std::uint8_t> late = activeNodes(band, index, features, snaps, x); // those worked on go on too: more room
+    const std::vector<std::uint8_t> late = activeNodes(views, features, snaps, x); // those worked on go on too: more room
     for (std::size_t n = 0; n < band.movable; ++n) active[n] = active[n] || late[n];
     pull({1e6});
-    if (!finish(band, index, features, snaps, x, energy, context)) summary.cutShort = true;
+    if (!finish(views, features, snaps, x, energy, context)) summary.cutShort = true;
     if (options.features) releaseUnreached(band, index, features, x, snaps);
-    snapExactly(band, index, features, snaps, x, energy);
+    snapExactly(views, features, snaps, x, energy);
     summary.offCauses = findOffCauses(band, index, features, snaps, x, energy);
     for (const Snap& s : snaps) summary.snapped += s.kind != SnapKind::none;
     for (std::uint8_t a : active) summary.active += a;
     store(band, x, front);
-    if (options.features) seekOnce(front, band, index, features, x, snaps, summary);
+    if (options.features) seekOnce(front, views, features, x, snaps, summary);
     if (options.features) summary.split += cutAcrossBends(front, index);
     summary.snaps = std::move(snaps);
     return summary;

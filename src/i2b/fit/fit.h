@@ -16,6 +16,8 @@
 
 namespace i2b {
 
+class WallViews;
+
 // Height of the prisms at the start, in h: they are right by construction.
 inline constexpr double startThickness = 0.07;
 
@@ -79,11 +81,11 @@ struct EnergyOptions {
     Budget budget;                // of time: asked before each sweep
 };
 // Gauss-Seidel over a colouring of the active nodes. active: per movable node. Gives whether all sweeps were within the budget.
-bool minimiseEnergy(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Snap>& snaps,
+bool minimiseEnergy(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps,
                     const std::vector<std::uint8_t>& active, std::vector<Vec3>& x, const EnergyOptions& options, const Context& context);
 
 // Moves wall nodes the whole, half or a quarter of the way to their targets where the corners stay good.
-void snapExactly(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Snap>& snaps,
+void snapExactly(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps,
                  std::vector<Vec3>& x, const EnergyOptions& options);
 
 } // namespace i2b

@@ -1,12 +1,13 @@
 #include "i2b/fit/insert.h"
 #include "i2b/core/collect.h"
+#include "i2b/core/flags.h"
 #include "i2b/fit/crossings.h"
 #include "i2b/fit/fit.h"
 #include "i2b/fit/front_room.h"
 #include "i2b/fit/lie.h"
+#include "i2b/fit/wall_views.h"
 #include "i2b/front/replace_faces.h"
 #include <algorithm>
-#include <atomic>
 
 namespace i2b {
 namespace {
@@ -35,9 +36,9 @@ struct Cuts { // of one face
 
 class Inserter {
   public:
-    Inserter(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features, std::vector<Vec3>& x,
+    Inserter(Front& front, WallViews& views, const FeatureIndex& features, std::vector<Vec3>& x,
              std::vector<Snap>& snaps)
-        : front_(front), band_(band), index_(index), features_(features), x_(x), snaps_(snaps), marks_(markWall(band, index, features, x, snaps)) {}
+        : front_(front), band_(views.band()), index_(views.index()), features_(features), x_(x), snaps_(snaps), marks_(markWall(views, features, x, snaps)) {}
     std::size_t run();
 
   private:
@@ -271,13 +272,12 @@ std::vector<RoomWish> Inserter::roomWanted(const std::vector<Cuts>& cuts) const 
 // Gives up crossings of faces that cannot take them, and those that end no cut. False: nothing to give up.
 bool Inserter::prune(const std::vector<Cuts>& cuts) {
     std::vector<std::uint8_t> used(crossings_.size(), 0), refused(crossings_.size(), 0);
-    const auto mark = [](std::uint8_t& flag) { std::atomic_ref<std::uint8_t>(flag).store(1, std::memory_order_relaxed); };
     parallelFor(cuts.size(), [&](std::size_t i) {
         for (const Ring& piece : cuts[i].pieces) {
             for (const Place& p : piece) {
                 if (p.crossing < 0) continue;
-                if (p.isEnd) mark(used[std::size_t(p.crossing)]);
-                if (!cuts[i].valid) mark(refused[std::size_t(p.crossing)]);
+                if (p.isEnd) setFlag(used[std::size_t(p.crossing)]);
+                if (!cuts[i].valid) setFlag(refused[std::size_t(p.crossing)]);
             }
         }
     });
@@ -394,9 +394,9 @@ std::size_t Inserter::run() {
 
 } // namespace
 
-std::size_t insertVertices(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features, std::vector<Vec3>& x,
+std::size_t insertVertices(Front& front, WallViews& views, const FeatureIndex& features, std::vector<Vec3>& x,
                            std::vector<Snap>& snaps) {
-    return Inserter(front, band, index, features, x, snaps).run();
+    return Inserter(front, views, features, x, snaps).run();
 }
 
 } // namespace i2b

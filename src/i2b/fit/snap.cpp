@@ -1,6 +1,6 @@
 #include "i2b/core/parallel.h"
 #include "i2b/fit/corner.h"
-#include "i2b/fit/fit.h"
+#include "i2b/fit/wall_views.h"
 
 namespace i2b {
 namespace {
@@ -13,18 +13,19 @@ double worstCorner(const Band& band, std::size_t n, const std::vector<Vec3>& x) 
 
 } // namespace
 
-void snapExactly(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Snap>& snaps,
+void snapExactly(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps,
                  std::vector<Vec3>& x, const EnergyOptions& options) {
+    const Band& band = views.band();
     const auto snapOne = [&](std::size_t b) {
-        const Vec3 f = x[static_cast<std::size_t>(band.frontNode[b])], old = x[b];
+        const Vec3 old = x[b];
         Vec3 to;
         const double floor = snaps[b].kind == SnapKind::none ? options.floor : options.featureFloor;
         if (snaps[b].kind == SnapKind::none) {
-            const WallTarget target = wallTarget(index, band, b, f, old);
+            const WallTarget& target = views.target(b, x);
             if (!target.found) return;
             to = target.point;
         } else {
-            to = snapLine(index, features, snaps[b], old, band.h[b]).point;
+            to = snapLine(views.index(), features, snaps[b], old, band.h[b]).point;
         }
         const Vec3 way = withinSides(to - old, band.outside[b]);
         if (norm(way) < 1e-12 * band.h[b]) return;

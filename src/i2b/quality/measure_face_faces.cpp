@@ -1,9 +1,9 @@
 // Pairs of faces that share points: all of them (duplicates), or some that do not follow each other on both
 // faces.
+#include "i2b/core/flags.h"
 #include "i2b/quality/measure_steps.h"
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <compare>
 
 namespace i2b {
@@ -162,9 +162,7 @@ class OddPoints {
                 odd = odd || spokes_[j].diagonal ||
                       (j > i && spokes_[j].third >= 0 && spokes_[j].third == spokes_[j - 1].third);
             if (!odd || j - i < 2) continue;
-            for (Index k = i; k < j; ++k)
-                std::atomic_ref<std::uint8_t>(suspects[Index(spokes_[k].face)])
-                    .store(1, std::memory_order_relaxed);
+            for (Index k = i; k < j; ++k) setFlag(suspects[Index(spokes_[k].face)]);
         }
     }
 

@@ -1,6 +1,6 @@
+#include "i2b/core/flags.h"
 #include "i2b/quality/face_measure.h"
 #include <array>
-#include <atomic>
 #include <numbers>
 
 namespace i2b {
@@ -8,10 +8,6 @@ namespace {
 
 using Index = std::size_t;
 constexpr double rounding = 1e-15, tinyLength = 1e-150, tinyArea = 1e-300;
-
-void mark(std::vector<std::uint8_t>& marks, std::int32_t i) {
-    std::atomic_ref<std::uint8_t>(marks[Index(i)]).store(1, std::memory_order_relaxed);
-}
 
 template <class Count>
 int repeatedVertices(std::span<const std::int32_t> v, Count n) {
@@ -128,7 +124,7 @@ double FaceMeasure::measure(std::int32_t id, std::span<const std::int32_t> v, Co
 void FaceMeasure::markShortEdges(std::span<const std::int32_t> v, const Vec3* edge) {
     for (Index i = 0; i < v.size(); ++i)
         if (norm2(edge[i]) < short2_)
-            for (const std::int32_t p : {v[i], v[i + 1 == v.size() ? 0 : i + 1]}) mark(m_.shortPoints, p);
+            for (const std::int32_t p : {v[i], v[i + 1 == v.size() ? 0 : i + 1]}) setFlag(m_.shortPoints[Index(p)]);
 }
 
 Tally tallyMarks(const std::vector<std::uint8_t>& marks) {

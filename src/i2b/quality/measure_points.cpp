@@ -1,7 +1,7 @@
+#include "i2b/core/flags.h"
 #include "i2b/quality/measure_steps.h"
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <functional>
 #include <tbb/parallel_sort.h>
 
@@ -137,7 +137,7 @@ void markNear(std::span<const Vec3> points, double near2, std::vector<std::uint8
                 const double other2 = norm2(q);
                 if (!(std::min(size2, other2) > std::max(size2, other2) - near2)) continue;
                 for (const std::int32_t k : {list[i].point, list[j].point})
-                    std::atomic_ref<std::uint8_t>(marks[Index(k)]).store(1, std::memory_order_relaxed);
+                    setFlag(marks[Index(k)]);
             }
         },
         4096);
