@@ -61,7 +61,8 @@ TEST(Folds, SameOnAnyNumberOfThreads) {
     for (std::size_t threads : {1, 2, 3}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
         std::vector<Snap>& snaps = results.emplace_back(run.band.walls);
-        snapToFeatures(run.views, run.front, run.features, run.x, snaps);
+        WallViews views(run.band, *run.painted.index); // each looks by itself
+        snapToFeatures(views, run.front, run.features, run.x, snaps);
         snapFolds(run, snaps);
     }
     for (std::size_t k = 1; k < results.size(); ++k)

@@ -66,9 +66,9 @@ struct Star {
             corner.weight = i % 3 == 0 ? 4 : 1;
             around[i] = static_cast<std::int32_t>(i);
         }
-        band.cornersOf.start.resize(2);
-        band.cornersOf.start[0] = 0, band.cornersOf.start[1] = static_cast<std::int64_t>(corners);
-        band.cornersOf.values = std::move(around);
+        band.cornersOf.fixed.start.resize(2);
+        band.cornersOf.fixed.start[0] = 0, band.cornersOf.fixed.start[1] = static_cast<std::int64_t>(corners);
+        band.cornersOf.fixed.values = std::move(around);
     }
 
     double plainEnergy(const Vec3& d) const {

@@ -90,38 +90,30 @@ void addPrisms(Band& band, const Front& front) {
         for (std::size_t f = begin; f < end; ++f) addPrism(band, front, f, pieces[chunk]);
     });
     appendCorners(band, pieces);
-    // In a row the core's corners come first: those of the prisms that were there before are left out.
-    const Csr<std::int32_t> core = std::move(band.cornersOf);
-    const std::size_t touched = band.walls + band.fronts;
+    const std::size_t touched = band.cornersOf.changingRows = band.walls + band.fronts;
+    const Csr<std::int32_t>& core = band.cornersOf.fixed;
     const Csr<std::int32_t> prisms = rowsOfCorners(band, touched, band.coreCorners, band.corners.size());
-    const auto isCore = [&](std::int32_t c) { return static_cast<std::size_t>(c) < band.coreCorners; };
-    const auto coreOf = [&](std::size_t n) { return std::span(core[n].begin(), n < touched ? std::partition_point(core[n].begin(), core[n].end(), isCore) : core[n].end()); };
-    band.cornersOf.start.resize(band.movable + 1);
-    parallelFor(band.movable, [&](std::size_t n) {
-        band.cornersOf.start[n] = static_cast<std::int64_t>(coreOf(n).size() + (n < touched ? prisms[n].size() : 0));
-    });
-    band.cornersOf.start[band.movable] = 0;
-    band.cornersOf.values.resize(static_cast<std::size_t>(exclusiveScan(band.cornersOf.start)));
-    parallelFor(band.movable, [&](std::size_t n) {
-        const auto own = coreOf(n);
-        std::int32_t* const to = std::copy(own.begin(), own.end(), band.cornersOf.values.data() + band.cornersOf.start[n]);
-        if (n < touched) std::copy(prisms[n].begin(), prisms[n].end(), to);
+    Csr<std::int32_t>& corners = band.cornersOf.changing;
+    corners.start.resize(touched + 1);
+    parallelFor(touched, [&](std::size_t n) { corners.start[n] = static_cast<std::int64_t>(core[n].size() + prisms[n].size()); });
+    corners.start[touched] = 0;
+    corners.values.resize(static_cast<std::size_t>(exclusiveScan(corners.start)));
+    parallelFor(touched, [&](std::size_t n) {
+        std::int32_t* const to = std::copy(core[n].begin(), core[n].end(), corners.values.data() + corners.start[n]);
+        std::copy(prisms[n].begin(), prisms[n].end(), to);
     });
     const Csr<BandEdge> wall = edgesOf(band.walls, pieces, [&](std::int32_t a, std::int32_t b) { return wallEdge(band, a, b); });
     // Each wall node has its front node last: higher in number than all wall nodes.
-    const auto old = static_cast<std::size_t>(band.edges.start[band.walls]), all = wall.values.size() + band.walls;
-    RawVector<BandEdge> values(all + band.edges.values.size() - old);
-    RawVector<std::int64_t> start(band.nodes() + 1);
+    band.edges.changingRows = band.walls;
+    Csr<BandEdge>& edges = band.edges.changing;
+    edges.values.resize(wall.values.size() + band.walls);
+    edges.start.resize(band.walls + 1);
+    edges.start[band.walls] = static_cast<std::int64_t>(edges.values.size());
     parallelFor(band.walls, [&](std::size_t v) {
-        start[v] = wall.start[v] + static_cast<std::int64_t>(v);
-        BandEdge* const end = std::copy(wall[v].begin(), wall[v].end(), values.data() + start[v]);
+        edges.start[v] = wall.start[v] + static_cast<std::int64_t>(v);
+        BandEdge* const end = std::copy(wall[v].begin(), wall[v].end(), edges.values.data() + edges.start[v]);
         *end = {static_cast<std::int32_t>(v), band.frontNode[v], 1};
     });
-    parallelFor(band.nodes() + 1 - band.walls, [&](std::size_t i) {
-        start[band.walls + i] = band.edges.start[band.walls + i] + static_cast<std::int64_t>(all) - static_cast<std::int64_t>(old);
-    });
-    parallelFor(values.size() - all, [&](std::size_t i) { values[all + i] = band.edges.values[old + i]; }, 4096);
-    band.edges = {std::move(start), std::move(values)};
 }
 
 // Numbers the band's core points: front, then movable, then fixed; within each in order of their numbers.
@@ -261,7 +253,7 @@ Band buildBand(const LatticeMesh& mesh, const Front& front, int rings, const Wan
         for (std::size_t v = begin; v < end; ++v) pieces[before + c].edges.push_back(edgeKey(static_cast<std::int32_t>(v), band.frontNode[v]));
     });
     // Core edges away from the front weigh as much less, or more, at front nodes as prisms are to be lower, or higher.
-    band.edges = edgesOf(band.nodes(), pieces, [&](std::int32_t a, std::int32_t b) {
+    band.edges.fixed = edgesOf(band.nodes(), pieces, [&](std::int32_t a, std::int32_t b) {
         const auto p = static_cast<std::size_t>(a), q = static_cast<std::size_t>(b), core = band.walls + band.fronts;
         if (p < band.walls || q < band.walls) return BandEdge{a, b, 1};
         BandEdge e{a, b, static_cast<float>(band.h[p] / norm(band.start[q] - band.start[p]))};
@@ -269,7 +261,7 @@ Band buildBand(const LatticeMesh& mesh, const Front& front, int rings, const Wan
         return e;
     });
     pieces = {};
-    band.cornersOf = rowsOfCorners(band, band.movable, 0, band.coreCorners);
+    band.cornersOf.fixed = rowsOfCorners(band, band.movable, 0, band.coreCorners);
     addPrisms(band, front);
     band.blocks = NodeBlocks(band);
     return band;

@@ -39,6 +39,14 @@ struct Csr { // rows of values
     }
 };
 
+// Rows the first of which change: these are by themselves, beside what they are made from.
+template <class T>
+struct ChangingCsr {
+    Csr<T> changing, fixed;
+    std::size_t changingRows = 0;
+    std::span<const T> operator[](std::size_t row) const { return row < changingRows ? changing[row] : fixed[row]; }
+};
+
 struct Band {
     std::size_t walls = 0;                // nodes [0, walls) are wall nodes, in fan order
     std::size_t fronts = 0;               // nodes [walls, walls + fronts) are front points
@@ -56,8 +64,8 @@ struct Band {
     Csr<std::int32_t> fansOf;             // per front node (less walls): its wall nodes
     RawVector<Corner> corners;            // the core's, then the prisms'
     std::size_t coreCorners = 0;
-    Csr<std::int32_t> cornersOf;          // per movable node
-    Csr<BandEdge> edges;                  // per node: a is the node itself, b the other end
+    ChangingCsr<std::int32_t> cornersOf;  // per movable node; fixed: of the core's
+    ChangingCsr<BandEdge> edges;          // per node: a is the node itself, b the other end; fixed: but those of the wall
     Csr<std::int32_t> parents;            // per node: ends of the coarse edge or face on whose middle it hangs; or none
 
     NodeBlocks blocks;                    // of the movable nodes
