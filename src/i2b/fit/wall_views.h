@@ -1,5 +1,5 @@
 // What wall nodes see of the geometry from where they stand, kept: a node that has not moved since, nor its front node, sees what
-// it saw. Half of what a fit asks for is asked a second time.
+// it saw. Of what a fit asks for that is a third.
 #pragma once
 #include "i2b/fit/between.h"
 #include "i2b/fit/fit.h"
