@@ -1,9 +1,9 @@
-// Files for the readers' tests: a folder that goes with the test, STL and OBJ texts and bytes, gzip, the real
-// files.
+// Files for the readers' tests: STL and OBJ texts and bytes, gzip, the real files.
 #pragma once
 #include "i2b/core/error.h"
 #include "i2b/core/vec.h"
 #include "i2b/geometry/read.h"
+#include "temp_folder.h"
 #include <array>
 #include <cstdint>
 #include <cstdlib>
@@ -14,35 +14,12 @@
 #include <gtest/gtest.h>
 #include <optional>
 #include <string>
-#include <unistd.h>
 #include <vector>
 #include <zlib.h>
 
 namespace i2b::test {
 
 using Corners = std::array<Vec3, 3>;
-
-class TempFolder {
-  public:
-    TempFolder() {
-        std::string pattern = (std::filesystem::temp_directory_path() / "i2b-geometry-XXXXXX").string();
-        if (!::mkdtemp(pattern.data())) std::abort();
-        path_ = pattern;
-    }
-    ~TempFolder() { std::filesystem::remove_all(path_); }
-    TempFolder(const TempFolder&) = delete;
-    TempFolder& operator=(const TempFolder&) = delete;
-
-    std::string path(const std::string& name) const { return (path_ / name).string(); }
-    std::string write(const std::string& name, const std::string& bytes) const {
-        std::filesystem::remove(path(name)); // writing over a file makes some file systems wait for the disk
-        std::ofstream(path(name), std::ios::binary) << bytes;
-        return path(name);
-    }
-
-  private:
-    std::filesystem::path path_;
-};
 
 inline std::string gzip(const std::string& bytes) {
     z_stream z{};

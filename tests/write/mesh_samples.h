@@ -1,13 +1,12 @@
 // Meshes made by hand for the writers' tests.
 #pragma once
 #include "i2b/assemble/poly_mesh.h"
+#include "temp_folder.h"
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 namespace i2b::test {
@@ -139,23 +138,6 @@ inline PolyMesh zooMesh() {
                        {12, 16, 17, 13},
                        {16, 14, 15, 17}}});
 }
-
-// A fresh folder that goes away with the test.
-class TempFolder {
-  public:
-    TempFolder() {
-        static std::atomic<int> serial{0};
-        path_ = std::filesystem::temp_directory_path() /
-                ("i2b-write-" + std::to_string(::getpid()) + "-" + std::to_string(serial++));
-        std::filesystem::create_directories(path_);
-    }
-    ~TempFolder() { std::filesystem::remove_all(path_); }
-    const std::filesystem::path& path() const { return path_; }
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
-  private:
-    std::filesystem::path path_;
-};
 
 inline std::string contents(const std::filesystem::path& path) {
     std::ifstream in(path, std::ios::binary);

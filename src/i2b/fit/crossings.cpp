@@ -153,7 +153,7 @@ EdgeCrossing Finder::on(std::int32_t edge) const {
     if (!between.line.found) {
         if (!c.beside) between = bendOn(p, q), c.bend = true;
         else if (!(marks.onLine[p] && marks.onLine[q])) between = marks.onLine[p] ? bendBeside(p, q) : bendBeside(q, p);
-        // A sharp edge nearer to it is under an end of the edge, and so that node's own business.
+        // One so near to a sharp edge is a part of that: no crossing, as right under an end of the edge, it is the node's own business.
         const auto nearBy = between.line.found ? features.closestLine(between.line.point, besideLine * std::max(band.h[p], band.h[q])) : FeatureIndex::Line{};
         if (nearBy.found && !nearBy.isRim) return c;
         c.kind = SnapKind::none;
