@@ -43,6 +43,7 @@ struct Finder {
     Between bendBeside(std::size_t held, std::size_t other) const;
     Between bendOn(std::size_t p, std::size_t q) const;
     double foldAt(std::size_t held, std::size_t other, const Vec3& way) const;
+    bool isUnderEnd(const Vec3& bend, std::size_t p, std::size_t q) const;
     Between lineAcross(std::size_t p, std::size_t q) const;
     EdgeCrossing on(std::int32_t edge) const;
 };
@@ -133,6 +134,15 @@ Between Finder::bendOn(std::size_t p, std::size_t q) const {
     return bend;
 }
 
+// Is a bend a part of a sharp edge under an end of the wall's edge, and so that node's own business?
+bool Finder::isUnderEnd(const Vec3& bend, std::size_t p, std::size_t q) const {
+    const FeatureIndex::Line line = features.closestLine(bend, besideLine * std::max(band.h[p], band.h[q]));
+    if (!line.found || line.isRim) return false;
+    Vec3 place;
+    const double t = nearestOn(line, x[p], x[q], place);
+    return !(t > nearEnd && t < 1 - nearEnd);
+}
+
 Between Finder::lineAcross(std::size_t p, std::size_t q) const {
     if (!marks.onLine[p] && !marks.onLine[q]) return lineOn(p, q);
     Between between;
@@ -153,9 +163,7 @@ EdgeCrossing Finder::on(std::int32_t edge) const {
     if (!between.line.found) {
         if (!c.beside) between = bendOn(p, q), c.bend = true;
         else if (!(marks.onLine[p] && marks.onLine[q])) between = marks.onLine[p] ? bendBeside(p, q) : bendBeside(q, p);
-        // One so near to a sharp edge is a part of that: no crossing, as right under an end of the edge, it is the node's own business.
-        const auto nearBy = between.line.found ? features.closestLine(between.line.point, besideLine * std::max(band.h[p], band.h[q])) : FeatureIndex::Line{};
-        if (nearBy.found && !nearBy.isRim) return c;
+        if (between.line.found && isUnderEnd(between.line.point, p, q)) return c;
         c.kind = SnapKind::none;
     }
     if (!between.line.found) return c;
