@@ -1,6 +1,6 @@
 // Proves: where faces are beyond the limits, dividing and uniting leaves a valid mesh with fewer of them, nothing worse and the
 // same points; those that nothing would help are told without a change; two changes help where none does alone; a mesh without any stays as it is; layers of asked heights are united
-// within their column only; the same on any number of threads.
+// within their column only, many cells only where flat ones lie on each other; the same on any number of threads.
 #include "i2b/quality/last_resort.h"
 #include "i2b/quality/changer.h"
 #include "i2b/quality/mesh_faults.h"
@@ -121,32 +121,75 @@ TEST(LastResort, LooksForNoConcaveFacesUnasked) {
     EXPECT_EQ(mesh.checksum(), shaken(5).checksum());
 }
 
-// Cells with little room between two faces much larger than the others, one over the other.
-TEST(LastResort, UnitesLayersOfOneColumnOnly) {
-    PolyMesh mesh = shaken(2);
-    for (Vec3& p : mesh.points) p.z *= 0.04; // layers a 25th as high as wide
-    const std::vector<std::int32_t> poor = poorFaces(mesh);
-    const Rows cellFaces = buildCellFaces(mesh);
-    std::vector<std::vector<std::int32_t>> layersUnder(static_cast<std::size_t>(mesh.cells)); // cells over each other
-    for (std::int32_t f = 0; f < mesh.internalFaces(); ++f) {
+// A block of layers a 25th as high as wide: little room between two faces much larger than the others, one over the other.
+PolyMesh shakenLayers(unsigned seed) {
+    PolyMesh mesh = shaken(seed);
+    for (Vec3& p : mesh.points) p.z *= 0.04;
+    return mesh;
+}
+
+// Per cell the lowest of those under and over it.
+std::vector<std::int32_t> columnsOf(const PolyMesh& mesh) {
+    std::vector<std::int32_t> column(Index(mesh.cells));
+    std::iota(column.begin(), column.end(), 0);
+    for (std::int32_t f = 0; f < mesh.internalFaces(); ++f) { // owners ascend, and come before neighbours
         const Vec3 area = measureFace(mesh, f).area;
-        if (std::abs(area.z) > 0.5 * norm(area)) layersUnder[static_cast<std::size_t>(mesh.owner[static_cast<std::size_t>(f)])].push_back(mesh.neighbour[static_cast<std::size_t>(f)]);
+        if (std::abs(area.z) > 0.5 * norm(area)) column[Index(mesh.neighbour[Index(f)])] = column[Index(mesh.owner[Index(f)])];
     }
-    std::vector<std::int32_t> column(static_cast<std::size_t>(mesh.cells), -1); // owners come before neighbours
-    for (std::int32_t c = 0; c < mesh.cells; ++c) {
-        auto& own = column[static_cast<std::size_t>(c)];
-        if (own < 0) own = c;
-        for (const std::int32_t next : layersUnder[static_cast<std::size_t>(c)]) column[static_cast<std::size_t>(next)] = own;
-    }
-    const LastResort done = changePoorPlaces(mesh, buildCellFaces(mesh), poor, {}, 0);
+    return column;
+}
+
+// The cells that have become one, for each that has.
+std::vector<std::vector<std::int32_t>> unitedCells(const LastResort& done, const PolyMesh& mesh) {
+    std::vector<std::vector<std::int32_t>> cells(Index(mesh.cells));
+    for (Index c = 0; c < done.cellOf.size(); ++c) cells[Index(done.cellOf[c])].push_back(static_cast<std::int32_t>(c));
+    std::erase_if(cells, [](const auto& of) { return of.size() < 2; });
+    return cells;
+}
+
+bool areOfOneColumn(const std::vector<std::int32_t>& cells, const std::vector<std::int32_t>& column) {
+    return std::ranges::all_of(cells, [&](std::int32_t c) { return column[Index(c)] == column[Index(cells.front())]; });
+}
+
+TEST(LastResort, UnitesLayersOfOneColumnOnly) {
+    PolyMesh mesh = shakenLayers(2);
+    const std::vector<std::int32_t> column = columnsOf(mesh);
+    const LastResort done = changePoorPlaces(mesh, buildCellFaces(mesh), poorFaces(mesh), {}, 0);
     ASSERT_GT(done.changes.merged, 0);
     EXPECT_EQ(mesh.validate(), "");
-    std::vector<std::int32_t> columnNow(static_cast<std::size_t>(mesh.cells), -1);
-    for (std::size_t c = 0; c < done.cellOf.size(); ++c) {
-        std::int32_t& now = columnNow[static_cast<std::size_t>(done.cellOf[c])];
-        EXPECT_TRUE(now < 0 || now == column[c]) << c;
-        now = column[c];
+    for (const auto& cells : unitedCells(done, mesh)) EXPECT_TRUE(areOfOneColumn(cells, column)) << cells.front();
+}
+
+// The most cells of a column of eight that may be united one after the other, cells that high and one wide; -1 where a stack
+// of more than four may be united with one beside it.
+int mostOfColumn(double height) {
+    PolyMesh mesh = shaken(1, 0);
+    for (Vec3& p : mesh.points) p.z *= height;
+    const Rows cellFaces = buildCellFaces(mesh);
+    LocalEdits edits(mesh, cellFaces);
+    const Changer changer(mesh, edits, {}, mesh.cells);
+    int most = 1;
+    for (std::int32_t next = 1; next < 8; ++next, ++most) { // cells 0 to 7 lie on each other
+        const auto between = std::ranges::find_if(cellFaces[next], [&](std::int32_t f) { return edits.across(f, next) == 0; });
+        bool mayOn = false;
+        for (const LocalEdits::Trial& trial : changer.all(*between)) {
+            const bool isBeside = trial.united && trial.groups.front() == 0 && trial.groups.back() >= 8;
+            if (most > 4 && isBeside) return -1;
+            mayOn = mayOn || (trial.united && trial.groups == std::vector<std::int32_t>{0, next});
+        }
+        if (!mayOn) break;
+        edits.unite(0, next);
     }
+    return most;
+}
+
+// More than four cells become one only where flat ones lie on each other, no higher together than wide.
+TEST(LastResort, UnitesManyCellsOnlyOfFlatStacks) {
+    EXPECT_EQ(mostOfColumn(1), 4);
+    EXPECT_EQ(mostOfColumn(0.23), 4);
+    EXPECT_EQ(mostOfColumn(0.19), 5);
+    EXPECT_EQ(mostOfColumn(0.15), 6);
+    EXPECT_EQ(mostOfColumn(0.1), 8);
 }
 
 TEST(LastResort, UnitesNoRegions) {

@@ -3,13 +3,14 @@
 #include "i2b/core/sort_unique.h"
 #include "i2b/quality/measure_steps.h"
 #include <algorithm>
+#include <cmath>
 
 namespace i2b {
 namespace {
 
 using Index = std::size_t;
 constexpr std::size_t mostCells = 4;     // of a group
-constexpr std::size_t mostThinCells = 16; // the same of layers in a column
+constexpr std::size_t mostStacked = 16;  // the same of flat ones on each other, as layers in a column are
 constexpr double stackedShare = 0.5;     // of the largest face of two cells, that they meet in
 constexpr std::int64_t mostNew = 1;      // faces beyond limits that the first of two changes may add
 constexpr int mostConcave = 2;           // cells that a change may make concave: those beside a divided face
@@ -115,26 +116,31 @@ std::vector<std::int32_t> Changer::byFace(std::int32_t group) const {
 
 bool Changer::mayUnite(std::int32_t a, std::int32_t b) const {
     const bool areThin = a >= thinFrom_ && b >= thinFrom_;
+    const std::size_t cells = edits_.cells(a).size() + edits_.cells(b).size();
     if (!mesh_.cellRegion.empty() && mesh_.cellRegion[Index(a)] != mesh_.cellRegion[Index(b)]) return false;
-    if (edits_.cells(a).size() + edits_.cells(b).size() > (areThin ? mostThinCells : mostCells) || !edits_.meetInOneFace(a, b)) return false;
-    return !areThin || areStacked(a, b);
+    if (cells > mostStacked || !edits_.meetInOneFace(a, b)) return false;
+    // Of thin cells only those of one column become one, else layers would end at others.
+    if (cells <= mostCells && !areThin) return true;
+    const Meeting m = meetingOf(a, b);
+    return m.isLarge && (areThin || cells <= mostCells || m.isWide);
 }
 
-// Of thin cells only those of one column become one, else layers would end at others: these meet in what is among the largest faces
-// of both.
-bool Changer::areStacked(std::int32_t a, std::int32_t b) const {
-    double shared2 = 0, largest2 = 0;
+Changer::Meeting Changer::meetingOf(std::int32_t a, std::int32_t b) const {
+    double shared2 = 0, largest2 = 0, volume = 0;
     std::vector<std::int32_t> faces;
     for (const std::int32_t group : {a, b}) {
         faces.clear();
         edits_.facesOf(group, faces);
         for (const std::int32_t f : faces) {
-            const double size2 = norm2(measureFace(mesh_, f).area);
+            const FaceShape shape = measureFace(mesh_, f);
+            const double size2 = norm2(shape.area), cone = dot(shape.area, shape.centre - mesh_.points[0]) / 3;
             largest2 = std::max(largest2, size2);
+            volume += edits_.of(mesh_.owner[Index(f)]) == group ? cone : -cone;
             if (edits_.across(f, group) == (group == a ? b : a)) shared2 = size2;
         }
     }
-    return shared2 > stackedShare * stackedShare * largest2;
+    const double shared = std::sqrt(shared2);
+    return {shared2 > stackedShare * stackedShare * largest2, volume <= shared * std::sqrt(shared)};
 }
 
 std::optional<LocalEdits::Trial> Changer::unite(std::int32_t a, std::int32_t b) const {
@@ -161,7 +167,7 @@ std::vector<std::int32_t> Changer::columnOf(std::int32_t group) const {
         return n >= thinFrom_ && mayUnite(column.back(), n) && std::ranges::all_of(column, farther);
     };
     const auto extend = [&] {
-        while (column.size() < mostThinCells) {
+        while (column.size() < mostStacked) {
             const std::vector<std::int32_t> next = byFace(column.back());
             const auto at = std::ranges::find_if(next, isNext);
             if (at == next.end()) return;

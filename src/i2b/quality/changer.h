@@ -46,7 +46,11 @@ class Changer {
   private:
     std::vector<std::int32_t> byFace(std::int32_t group) const; // neighbours, the one across the largest face first
     bool mayUnite(std::int32_t a, std::int32_t b) const;
-    bool areStacked(std::int32_t a, std::int32_t b) const;
+    struct Meeting {
+        bool isLarge = false; // the face between two groups: about the largest of both, as in a column of layers
+        bool isWide = false;  // as wide as both together are high, or wider
+    };
+    Meeting meetingOf(std::int32_t a, std::int32_t b) const;
     std::optional<Trial> unite(std::int32_t a, std::int32_t b) const;
     std::optional<Trial> uniteAll(std::vector<std::int32_t> groups) const;
     std::vector<std::int32_t> columnOf(std::int32_t group) const;
