@@ -92,10 +92,13 @@ bool stepBackBad(const Band& band, const std::vector<Vec3>& x, double limit, dou
 void spread(const Band& band, Progress& progress) {
     RawVector<double> bound(band.movable);
     for (int round = 0; round < 4; ++round) {
+        std::uint8_t any = 0;
         forFlagged(progress.untold, [&](std::size_t n) {
             for (const BandEdge& e : band.edges[n]) progress.mark(e.b);
             progress.untold[n] = 0;
+            setFlag(any);
         });
+        if (any == 0) return;
         forFlagged(progress.marked, [&](std::size_t n) {
             double a = progress.alpha[n];
             for (const BandEdge& e : band.edges[n]) {
@@ -150,8 +153,11 @@ std::vector<std::uint8_t> nodesOfPoorCorners(const Band& band, const std::vector
     return poor;
 }
 
-std::vector<double> blend(const Band& band, const std::vector<Vec3>& start, const std::vector<Vec3>& goal, std::vector<Vec3>& x) {
+std::vector<double> blend(const Band& band, const std::vector<Vec3>& start, const std::vector<Vec3>& goal, std::vector<Vec3>& x,
+                          const std::vector<std::uint8_t>& stays) {
     Progress progress(band);
+    forFlagged(stays, [&](std::size_t n) { progress.lower(n, 0); });
+    spread(band, progress);
     x = start;
     place(start, goal, progress, x);
     for (int round = 0;; ++round) {

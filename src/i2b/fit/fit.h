@@ -18,8 +18,9 @@ namespace i2b {
 
 class WallViews;
 
-// Height of the prisms at the start, in h: they are right by construction.
-inline constexpr double startThickness = 0.07;
+// Height of the prisms at the start, in h: they are right by construction. Flatter ones have little of the energy to spare that a
+// corner may have in the blend, so that few nodes go the whole way; of much higher ones the wall folds where the front is hollow.
+inline constexpr double startThickness = 0.12;
 
 struct FitSummary {
     std::size_t wallNodes = 0;
@@ -63,8 +64,9 @@ Vec3 seenFront(const SurfaceIndex& index, const Band& band, std::size_t wallNode
 std::vector<Vec3> goalPositions(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& start, int sweeps);
 
 // x = start + alpha (goal - start) with the largest alpha per node, bounded in slope, that leaves every corner good.
-// Gives alpha per movable node; x is filled.
-std::vector<double> blend(const Band& band, const std::vector<Vec3>& start, const std::vector<Vec3>& goal, std::vector<Vec3>& x);
+// Gives alpha per movable node; x is filled. stays: per wall node (or empty), not 0: alpha is 0.
+std::vector<double> blend(const Band& band, const std::vector<Vec3>& start, const std::vector<Vec3>& goal, std::vector<Vec3>& x,
+                          const std::vector<std::uint8_t>& stays = {});
 
 // Corner quality: phi = 0.75 |J|^2 / (3 D^(2/3)) + 0.125 (D + 1/D), infinite where D <= 0; 1 for the ideal corner.
 double cornerEnergy(const Corner& corner, const std::vector<Vec3>& x);
