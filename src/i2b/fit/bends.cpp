@@ -16,7 +16,7 @@ constexpr Want want{0.005, 0.95};
 // Where it may make the cell behind the front concave: of quads that lie along the geometry, and of others. Smooth walls stay
 // quads.
 constexpr Want concaveWant{0.03, 0.5}, leantConcaveWant{0.01, 0.75};
-constexpr double leastBulge = 0.05;  // of h: of the front's quad at the cut, for the cell behind to stay convex as nodes go on moving
+constexpr double leastBulge = 0.06;  // of h: of the front's quad at the cut, for the cell behind to stay convex as nodes go on moving
 constexpr double worstCorner = 0.1;  // scaled Jacobian that the prisms of the pieces must have
 const double leant = std::cos(6 * 3.14159265358979323846 / 180);
 

@@ -16,15 +16,14 @@ namespace i2b {
 namespace {
 
 constexpr int rings = 2;             // of core points behind the front that move
-constexpr double offTarget = 0.05;   // of h: a wall node farther from its target is worked on,
-constexpr double offAtLast = 0.01;   // by the strongest pull one farther than this
-constexpr double nearLine = 1;       // of h: and one so near a sharp edge, to have room for those that are to come onto it
-constexpr double uponLine = 0.5;     // of h: a node with its goal so near one is brought there by the pulls, not at once
+constexpr double offTarget = 0.01;   // of h: a wall node farther from its target is worked on
+constexpr double nearLine = 0.5;     // of h: a node with its goal so near a sharp edge is brought to the wall by the pulls, not at once,
+constexpr double nearRim = 2;        // and one so near a rim, where both sides of a sheet want room around it
 constexpr double unreached = 0.1;    // of h: a node farther from its feature is let go at the end
 constexpr double unfinished = 0.05;  // of h: a wall node farther from its target after that goes on,
 constexpr int finishingSweeps = 8;   // for so many sweeps at most; on a line only where the wall folds back as far as this
 constexpr double farBack = -0.17;    // cosine: the upper edge of a step would take the room of its foot
-constexpr double poorEnergy = 3;     // phi: nodes of such corners are worked on
+constexpr double poorEnergy = 2.2;   // phi: nodes of such corners are worked on
 
 void grow(const Band& band, std::vector<std::uint8_t>& marked, int rings) {
     for (int ring = 0; ring < rings; ++ring) {
@@ -45,17 +44,25 @@ double wayToGo(WallViews& views, const FeatureIndex& features, const Snap& snap,
     return t.found ? norm(t.point - x[n]) : 0;
 }
 
-// Nodes off their target by more than `off` (of h), snapped, near a sharp edge or in a poor corner, and those around them.
-std::vector<std::uint8_t> activeNodes(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps, const std::vector<Vec3>& x,
-                                      double off) {
+// Nodes off their target, snapped or in a poor corner, and those around them.
+std::vector<std::uint8_t> activeNodes(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps, const std::vector<Vec3>& x) {
     const Band& band = views.band();
     std::vector<std::uint8_t> active = nodesOfPoorCorners(band, x, poorEnergy);
     parallelFor(band.walls, [&](std::size_t n) {
-        active[n] = active[n] || snaps[n].kind != SnapKind::none || wayToGo(views, features, snaps[n], x, n) > off * band.h[n] ||
-                    features.closestLine(x[n], nearLine * band.h[n]).found;
+        active[n] = active[n] || snaps[n].kind != SnapKind::none || wayToGo(views, features, snaps[n], x, n) > offTarget * band.h[n];
     });
     grow(band, active, 1);
     return active;
+}
+
+// Wall nodes at a sharp edge or a rim: the closest point says little of where they belong.
+std::vector<std::uint8_t> nodesAtLines(const Band& band, const FeatureIndex& features, const std::vector<Vec3>& x) {
+    std::vector<std::uint8_t> atLine(band.walls);
+    parallelFor(band.walls, [&](std::size_t n) {
+        const FeatureIndex::Line line = features.closestLine(x[n], nearRim * band.h[n]);
+        atLine[n] = line.found && (line.isRim || norm(line.point - x[n]) < nearLine * band.h[n]);
+    });
+    return atLine;
 }
 
 // Does the wall around a node fold far back, as at the rim of a sheet?
@@ -194,15 +201,13 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     const std::vector<Vec3> goal = goalPositions(band, index, start, options.sweeps);
     context.checkCancelled();
     const FeatureIndex features(graph);
-    std::vector<std::uint8_t> stays(band.walls); // the closest point says little of where at a sharp edge a node belongs
-    parallelFor(band.walls, [&](std::size_t n) { stays[n] = features.closestLine(goal[n], uponLine * band.h[n]).found; });
     std::vector<Vec3> x;
-    const std::vector<double> alpha = blend(band, start, goal, x, stays);
+    const std::vector<double> alpha = blend(band, start, goal, x, nodesAtLines(band, features, goal));
     for (std::size_t v = 0; v < band.walls; ++v) summary.blended += alpha[v] == 1;
 
     WallViews views(band, index);
     std::vector<Snap> snaps(band.walls);
-    std::vector<std::uint8_t> active = activeNodes(views, features, snaps, x, offTarget);
+    std::vector<std::uint8_t> active = activeNodes(views, features, snaps, x);
     const auto pull = [&](std::vector<double> weights) {
         energy.wallWeights = std::move(weights);
         if (!minimiseEnergy(views, features, snaps, active, x, energy, context)) summary.cutShort = true;
@@ -222,13 +227,13 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     };
     pull({10, 100});
     snap();
-    active = activeNodes(views, features, snaps, x, offTarget);
+    active = activeNodes(views, features, snaps, x);
     pull({1e3});
     snapAndSplit();
-    active = activeNodes(views, features, snaps, x, offTarget);
+    active = activeNodes(views, features, snaps, x);
     pull({1e5});
     snapAndSplit(); // what has come into view since
-    const std::vector<std::uint8_t> late = activeNodes(views, features, snaps, x, offAtLast); // those worked on go on too: more room
+    const std::vector<std::uint8_t> late = activeNodes(views, features, snaps, x); // those worked on go on too: more room
     for (std::size_t n = 0; n < band.movable; ++n) active[n] = active[n] || late[n];
     pull({1e6});
     if (!finish(views, features, snaps, x, energy, context)) summary.cutShort = true;
