@@ -1,6 +1,6 @@
 // Proves: no step of the fit inverts a corner; the energy falls, ends where its gradient is nought and its
 // gradient is the one that finite differences give; the exact snap keeps the floor; the domain's sides stay
-// planes to the last bit; the front stands off as far as layers want.
+// planes to the last bit; the front stands off as far as layers want; nodes that are to stay do.
 #include "carve/kept_checks.h"
 #include "i2b/carve/carve.h"
 #include "i2b/fit/wall_views.h"
@@ -161,6 +161,25 @@ TEST_P(Fit, StartIsValidAndBlendStaysSo) {
         }
         blend(s.band, s.band.start, wild, x);
         EXPECT_EQ(inverted(s.band, x), 0u) << "seed " << seed;
+    });
+}
+
+// And holds back those around, by so much that all lie well.
+TEST_P(Fit, BlendLeavesNodesThatStayAtTheStart) {
+    forSettings(GetParam(), [](const Setting& s, unsigned seed) {
+        const std::vector<Vec3> goal = goalPositions(s.band, *s.painted.index, s.band.start, 4);
+        std::vector<Vec3> x;
+        std::vector<std::uint8_t> stays(s.band.walls, 0);
+        for (std::size_t n = 0; n < s.band.walls; n += 50) stays[n] = 1;
+        const std::vector<double> alpha = blend(s.band, s.band.start, goal, x, stays);
+        EXPECT_EQ(inverted(s.band, x), 0u) << "seed " << seed;
+        for (std::size_t n = 0; n < s.band.walls; ++n) {
+            if (!stays[n]) continue;
+            ASSERT_EQ(x[n], s.band.start[n]) << n;
+            for (const BandEdge& e : s.band.edges[n]) {
+                if (std::size_t(e.b) < s.band.movable) { ASSERT_LT(alpha[std::size_t(e.b)], 0.5) << n; }
+            }
+        }
     });
 }
 

@@ -23,7 +23,7 @@ constexpr double unreached = 0.1;    // of h: a node farther from its feature is
 constexpr double unfinished = 0.05;  // of h: a wall node farther from its target after that goes on,
 constexpr int finishingSweeps = 8;   // for so many sweeps at most; on a line only where the wall folds back as far as this
 constexpr double farBack = -0.17;    // cosine: the upper edge of a step would take the room of its foot
-constexpr double poorEnergy = 2.2;   // phi: nodes of such corners are worked on
+constexpr double poorEnergy = 2.6;   // phi: nodes of such corners are worked on
 
 void grow(const Band& band, std::vector<std::uint8_t>& marked, int rings) {
     for (int ring = 0; ring < rings; ++ring) {
