@@ -164,7 +164,7 @@ TEST_P(Fit, StartIsValidAndBlendStaysSo) {
     });
 }
 
-// And holds back those around, by so much that all lie well.
+// They hold back those around them by so much that all lie well.
 TEST_P(Fit, BlendLeavesNodesThatStayAtTheStart) {
     forSettings(GetParam(), [](const Setting& s, unsigned seed) {
         const std::vector<Vec3> goal = goalPositions(s.band, *s.painted.index, s.band.start, 4);

@@ -122,7 +122,7 @@ bool Changer::mayUnite(std::int32_t a, std::int32_t b) const {
     // Of thin cells only those of one column become one, else layers would end at others.
     if (cells <= mostCells && !areThin) return true;
     const Meeting m = meetingOf(a, b);
-    return m.isLarge && (areThin || cells <= mostCells || m.isWide);
+    return m.isLarge && (areThin || m.isWide);
 }
 
 Changer::Meeting Changer::meetingOf(std::int32_t a, std::int32_t b) const {
