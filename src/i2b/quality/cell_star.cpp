@@ -15,9 +15,14 @@ constexpr double flat = 1e-9;        // a pyramid below this cosine is wrong, as
 constexpr double wrong = 30;         // of a cell inside out
 constexpr Index none = ~Index(0);
 
-void add(Badness& out, double share) {
+void addLow(Badness& out, double share) {
     out.worst = std::max(out.worst, share);
     if (share > counts) out.sum += (share - counts) * (share - counts);
+}
+
+void add(Badness& out, double share) {
+    out.beyond = std::max(out.beyond, share);
+    addLow(out, share);
 }
 
 } // namespace
@@ -108,7 +113,7 @@ void CellStar::judgeCell(Index i, Badness& out) {
         out.invalid = out.invalid || !(cosine > flat);
         // Of thin cells the way to the centre of a face may be far longer sideways than across it.
         const double pyramid = cells_[i] < thinFrom_ ? cosine : sign * dot(row_[k].area, arm) / std::max(m.volume, 1e-300);
-        if (pyramid < leastPyramid) add(out, std::min(wrong, 1 + (leastPyramid - pyramid) / leastPyramid));
+        if (pyramid < leastPyramid) addLow(out, std::min(wrong, 1 + (leastPyramid - pyramid) / leastPyramid));
     }
     const bool isThin = cells_[i] >= thinFrom_;
     const double least = isThin ? leastFull_ : limits_.determinant;
@@ -182,7 +187,10 @@ Badness CellStar::judge(const Badness& before, double most) {
 }
 
 bool CellStar::mayStand(const Badness& before) {
-    const auto mayNot = [&](const Badness& now) { return now.invalid || (now.worst > nearLimit && (now.worst > before.worst || now.sum > before.sum)); };
+    const auto mayNot = [&](const Badness& now) {
+        const auto isWorse = [](double a, double b) { return a > nearLimit && a > b; };
+        return now.invalid || isWorse(now.worst, before.worst) || isWorse(now.beyond, before.beyond) || (now.worst > nearLimit && now.sum > before.sum);
+    };
     return !mayNot(judge(mayNot));
 }
 

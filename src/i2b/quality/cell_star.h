@@ -15,6 +15,7 @@ inline constexpr double nearLimit = 0.98; // of a limit: so near to it a move ma
 struct Badness {
     double sum = 0;   // of the squares of what is over 0.9
     double worst = 0;
+    double beyond = 0;     // the worst of what a report counts: pyramids that are only low are no fault yet
     bool invalid = false;  // a cell without a positive volume, or a face pyramid that points the wrong way
 };
 
