@@ -10,7 +10,7 @@ namespace {
 constexpr double onLine = 0.1;       // of h: a snapped node so near to its line stands on it
 constexpr double upon = 0.02;        // of h: a node so near to two parts stands on their border
 constexpr double nearEnd = 0.12;     // of an edge: crossings nearer to an end are that node's own business
-constexpr double farOff = 0.6;       // of an edge: crossings farther from it belong to another one
+constexpr double farOff = 0.9;       // of an edge: crossings farther from it belong to another one
 constexpr double nearHeld = 0.2;     // of h: crossings nearer to an end that stands on another line are left
 constexpr double beforeEnd = 0.85;   // of an edge: where it is beside the line that its end stands on
 constexpr double bridged = 0.04;     // of h: an edge whose places are farther off the geometry bridges a corner
@@ -148,6 +148,7 @@ Between Finder::lineAcross(std::size_t p, std::size_t q) const {
     Between between;
     if (marks.onLine[p]) between = lineBeside(p, q);
     if (marks.onLine[q] && !between.line.found) between = lineBeside(q, p);
+    if (!between.line.found) between = lineOver(index, features, x[p], x[q], (frontOf(p) + frontOf(q)) * 0.5, std::max(band.h[p], band.h[q]));
     return between;
 }
 
@@ -182,7 +183,7 @@ EdgeCrossing Finder::on(std::int32_t edge) const {
     const auto isFrom = [&](std::size_t n) { return norm(c.wall - x[n]) > nearHeld * band.h[n]; };
     const double t = std::clamp(c.t, nearEnd, 1 - nearEnd);
     c.underEnd = t != c.t;
-    if (c.underEnd && !(c.beside && isFrom(p) && isFrom(q))) return c; // else the foot of a step whose upper edge the end stands on
+    if (c.underEnd && !(isFrom(p) && isFrom(q))) return c; // else what an end leans over, as the foot of a step whose upper edge it stands on
     c.t = t;
     c.tangent = between.line.tangent;
     if (between.kind != SnapKind::line) {

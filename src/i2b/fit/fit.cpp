@@ -2,14 +2,12 @@
 #include "i2b/core/collect.h"
 #include "i2b/core/parallel.h"
 #include "i2b/fit/bends.h"
-#include "i2b/fit/between.h"
 #include "i2b/fit/corner.h"
 #include "i2b/fit/folds.h"
 #include "i2b/fit/insert.h"
 #include "i2b/fit/off_wall.h"
 #include "i2b/fit/wall_views.h"
 #include <algorithm>
-#include <array>
 #include <numeric>
 
 namespace i2b {
@@ -21,8 +19,7 @@ constexpr double nearLine = 0.5;     // of h: a node with its goal so near a sha
 constexpr double nearRim = 2;        // and one so near a rim, where both sides of a sheet want room around it
 constexpr double unreached = 0.1;    // of h: a node farther from its feature is let go at the end
 constexpr double unfinished = 0.05;  // of h: a wall node farther from its target after that goes on,
-constexpr int finishingSweeps = 8;   // for so many sweeps at most; on a line only where the wall folds back as far as this
-constexpr double farBack = -0.17;    // cosine: the upper edge of a step would take the room of its foot
+constexpr int finishingSweeps = 8;   // for so many sweeps at most
 constexpr double poorEnergy = 2.6;   // phi: nodes of such corners are worked on
 
 void grow(const Band& band, std::vector<std::uint8_t>& marked, int rings) {
@@ -65,29 +62,13 @@ std::vector<std::uint8_t> nodesAtLines(const Band& band, const FeatureIndex& fea
     return atLine;
 }
 
-// Does the wall around a node fold far back, as at the rim of a sheet?
-bool foldsBack(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, std::size_t wall) {
-    std::array<Vec3, 8> normals;
-    std::size_t n = 0;
-    for (const BandEdge& e : band.edges[wall]) {
-        if (static_cast<std::size_t>(e.b) >= band.walls || n == normals.size()) continue;
-        if (const Foot foot = footOf(band, index, x, static_cast<std::size_t>(e.b)); foot.found) normals[n++] = foot.normal;
-    }
-    for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t j = 0; j < i; ++j)
-            if (dot(normals[i], normals[j]) < farBack) return true;
-    return false;
-}
-
 // Those of some wall nodes that are not where they should be, and may go on.
 std::vector<std::uint32_t> unfinishedOf(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps, const std::vector<Vec3>& x,
                                         const std::vector<std::uint32_t>& nodes) {
     const Band& band = views.band();
     std::vector<std::uint8_t> isOff(nodes.size(), 0);
     parallelFor(nodes.size(), [&](std::size_t i) {
-        const std::size_t n = nodes[i];
-        isOff[i] = wayToGo(views, features, snaps[n], x, n) > unfinished * band.h[n] &&
-                   (snaps[n].kind != SnapKind::line || foldsBack(band, views.index(), x, n));
+        isOff[i] = wayToGo(views, features, snaps[nodes[i]], x, nodes[i]) > unfinished * band.h[nodes[i]];
     });
     std::vector<std::uint32_t> off;
     for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -95,9 +76,8 @@ std::vector<std::uint32_t> unfinishedOf(WallViews& views, const FeatureIndex& fe
     return off;
 }
 
-// At rims and in narrow places nodes come a little way in a sweep: these, a few in a hundred, go on with those around them, with
-// the weights of the last one.
-// Gives whether all sweeps were within the budget.
+// At lines and in narrow places nodes come a little way in a sweep: these, a few in a hundred, go on with those around them, with
+// the weights of the last one. Gives whether all sweeps were within the budget.
 bool finish(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps, std::vector<Vec3>& x, const EnergyOptions& energy,
             const Context& context) {
     const Band& band = views.band();
