@@ -7,8 +7,11 @@
 namespace i2b {
 
 struct RoomWish {
-    std::int32_t wall = -1;  // node of the band at the corner
+    std::int32_t wall = -1;  // node of the band at the corner, or the first end of the edge that the corner is on
     Vec3 normal;             // unit, of the face there, into the fluid
+    std::int32_t other = -1; // the other end, or none
+    double t = 0;            // share of the way to it
+    Vec3 place;              // m, of the corner on the wall
 };
 
 inline constexpr double leastSlope = 0.25; // of the way from wall to front over a face: its sine

@@ -19,6 +19,7 @@ constexpr double nearer = 0.8;       // share of its distance that the pieces of
 const double alongLine = std::cos(20 * 3.14159265358979323846 / 180);
 constexpr double worstCorner = 0.06; // scaled Jacobian that a piece of a prism must have,
 constexpr double worstGood = 0.15;   // and where no line asks for it, or one right under an end of an edge
+constexpr double straight = -0.97;   // cosine: the angle at a vertex that is no corner
 constexpr std::size_t mostVertices = 8; // of a front face
 
 struct Place { // a vertex of a face that may be cut
@@ -167,20 +168,20 @@ bool Inserter::isOnOneEdge(const Ring& ring) const {
     return front_.areOnOneEdge(vertices);
 }
 
-// Corners of the prism on a piece; new vertices in the middle of an edge have none.
+// Corners of the prism on a piece; new vertices in the middle of an edge have none, nor has any where the piece goes on all but straight.
 bool Inserter::isValid(const Ring& ring, double worst) const {
     const std::size_t n = ring.size();
     if (n > mostVertices || isOnOneEdge(ring) || std::any_of(ring.begin(), ring.end(), [&](const Place& p) { return dents(p); })) return false;
+    const auto isGood = [worst](const Vec3& a, const Vec3& b, const Vec3& c) {
+        const double l = norm(a) * norm(b) * norm(c);
+        return (l > 0 && dot(cross(a, b), c) >= worst * l) || dot(a, b) < straight * norm(a) * norm(b);
+    };
     for (std::size_t i = 0; i < n; ++i) {
         const Place &before = ring[(i + n - 1) % n], &at = ring[i], &after = ring[(i + 1) % n];
         if (at.vertex < 0 && !at.isEnd) continue;
-        const auto corner = [](const Vec3& a, const Vec3& b, const Vec3& c) {
-            const double l = norm(a) * norm(b) * norm(c);
-            return l > 0 ? dot(cross(a, b), c) / l : -1;
-        };
         const Vec3 way = wallAt(at) - frontAt(at);
-        if (corner(frontAt(after) - frontAt(at), frontAt(before) - frontAt(at), way) < worst) return false;
-        if (corner(wallAt(before) - wallAt(at), wallAt(after) - wallAt(at), -way) < worst) return false;
+        if (!isGood(frontAt(after) - frontAt(at), frontAt(before) - frontAt(at), way)) return false;
+        if (!isGood(wallAt(before) - wallAt(at), wallAt(after) - wallAt(at), -way)) return false;
     }
     return true;
 }
@@ -247,15 +248,21 @@ Cuts Inserter::cutsOf(std::size_t face) const {
     return cuts;
 }
 
-// Of the corners of a piece that stand right on the wall, with too little height under the front.
+// Of corners of a piece that have too little height under the front.
 void Inserter::wishRoom(const Ring& piece, std::vector<RoomWish>& wishes) const {
     const std::size_t n = piece.size();
     for (std::size_t i = 0; i < n; ++i) {
         const Place& at = piece[i];
-        if (at.vertex < 0) continue;
+        if (at.vertex < 0 && !at.isEnd) continue;
         const Vec3 before = wallAt(piece[(i + n - 1) % n]) - wallAt(at), after = wallAt(piece[(i + 1) % n]) - wallAt(at);
         const Vec3 normal = normalized(cross(before, after)), way = frontAt(at) - wallAt(at);
-        if (norm(cross(before, after)) > leastSlope * norm(before) * norm(after) && dot(normal, way) < leastSlope * norm(way)) wishes.push_back({at.vertex, normal});
+        if (norm(cross(before, after)) <= leastSlope * norm(before) * norm(after) || dot(normal, way) >= leastSlope * norm(way)) continue;
+        if (at.vertex >= 0) {
+            wishes.push_back({at.vertex, normal, -1, 0, wallAt(at)});
+        } else {
+            const EdgeCrossing& c = crossings_[std::size_t(at.crossing)];
+            wishes.push_back({c.p, normal, c.q, c.t, c.wall});
+        }
     }
 }
 
