@@ -53,6 +53,7 @@ class Inserter {
     Foot footUnder(const Ring& ring, std::size_t from, std::size_t to) const;
     bool isOnOneEdge(const Ring& ring) const;
     bool isValid(const Ring& ring, double worst) const;
+    bool isOptional(const Place& p) const;
     bool isOnBend(const Place& p) const;
     Lie lieOfRing(const Ring& ring) const;
     bool isNearer(const Ring& ring, const std::vector<Ring>& pieces) const;
@@ -186,6 +187,11 @@ bool Inserter::isValid(const Ring& ring, double worst) const {
     return true;
 }
 
+// Does no line ask for it, or is it right under an end of its edge?
+bool Inserter::isOptional(const Place& p) const {
+    return p.crossing >= 0 && (crossings_[std::size_t(p.crossing)].kind == SnapKind::none || crossings_[std::size_t(p.crossing)].underEnd);
+}
+
 bool Inserter::isOnBend(const Place& p) const { return p.crossing >= 0 && crossings_[std::size_t(p.crossing)].bend; }
 
 Lie Inserter::lieOfRing(const Ring& ring) const {
@@ -239,9 +245,7 @@ Cuts Inserter::cutsOf(std::size_t face) const {
     Cuts cuts;
     divide(ring, cuts);
     const bool touched = cuts.pieces.size() > 1 || std::any_of(ring.begin(), ring.end(), [](const Place& p) { return p.vertex < 0; });
-    const bool mustBeGood = std::any_of(ring.begin(), ring.end(), [&](const Place& p) {
-        return p.crossing >= 0 && (crossings_[std::size_t(p.crossing)].kind == SnapKind::none || crossings_[std::size_t(p.crossing)].underEnd);
-    });
+    const bool mustBeGood = std::any_of(ring.begin(), ring.end(), [&](const Place& p) { return isOptional(p); });
     const double worst = mustBeGood ? worstGood : worstCorner;
     cuts.valid = !touched || std::all_of(cuts.pieces.begin(), cuts.pieces.end(), [&](const Ring& piece) { return isValid(piece, worst); });
     if (cuts.valid && cuts.pieces.size() > 1 && std::any_of(ring.begin(), ring.end(), [&](const Place& p) { return isOnBend(p); })) cuts.valid = isNearer(ring, cuts.pieces);
@@ -276,15 +280,19 @@ std::vector<RoomWish> Inserter::roomWanted(const std::vector<Cuts>& cuts) const 
     return wishes;
 }
 
-// Gives up crossings of faces that cannot take them, and those that end no cut. False: nothing to give up.
+// Gives up crossings of faces that cannot take them, and those that end no cut; beside one on a line those that need not be come first.
+// False: nothing to give up.
 bool Inserter::prune(const std::vector<Cuts>& cuts) {
     std::vector<std::uint8_t> used(crossings_.size(), 0), refused(crossings_.size(), 0);
     parallelFor(cuts.size(), [&](std::size_t i) {
+        const bool anyOptional = !cuts[i].valid && std::any_of(cuts[i].pieces.begin(), cuts[i].pieces.end(), [&](const Ring& piece) {
+            return std::any_of(piece.begin(), piece.end(), [&](const Place& p) { return isOptional(p); });
+        });
         for (const Ring& piece : cuts[i].pieces) {
             for (const Place& p : piece) {
                 if (p.crossing < 0) continue;
                 if (p.isEnd) setFlag(used[std::size_t(p.crossing)]);
-                if (!cuts[i].valid) setFlag(refused[std::size_t(p.crossing)]);
+                if (!cuts[i].valid && isOptional(p) == anyOptional) setFlag(refused[std::size_t(p.crossing)]);
             }
         }
     });
