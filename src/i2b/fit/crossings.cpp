@@ -182,8 +182,8 @@ EdgeCrossing Finder::on(std::int32_t edge) const {
     if (!(c.t > 0 && c.t < 1)) return c;
     const auto isFrom = [&](std::size_t n) { return norm(c.wall - x[n]) > nearHeld * band.h[n]; };
     const double t = std::clamp(c.t, nearEnd, 1 - nearEnd);
-    c.underEnd = t != c.t;
-    if (c.underEnd && !(isFrom(p) && isFrom(q))) return c; // else what an end leans over, as the foot of a step whose upper edge it stands on
+    // Else an end leans over the line, as over the foot of a step whose upper edge it stands on: the place on the front is farther along.
+    if (t != c.t && !(isFrom(p) && isFrom(q))) return c;
     c.t = t;
     c.tangent = between.line.tangent;
     if (between.kind != SnapKind::line) {

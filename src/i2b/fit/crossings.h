@@ -23,7 +23,6 @@ struct EdgeCrossing {
     SnapKind kind = SnapKind::none;         // of the line; none: a bend
     Vec3 tangent;                           // unit, of the line or border
     bool beside = false;                    // an end of the edge stands on another line
-    bool underEnd = false;                  // right under an end of the edge: the place on the front is farther along
     bool bend = false;                      // away from lines
     bool alive = false;                     // false: there is none
 };

@@ -18,7 +18,7 @@ constexpr double onGeometry = 0.03;  // of h: so near to the geometry the middle
 constexpr double nearer = 0.8;       // share of its distance that the pieces of a face may keep where bends are cut
 const double alongLine = std::cos(20 * 3.14159265358979323846 / 180);
 constexpr double worstCorner = 0.06; // scaled Jacobian that a piece of a prism must have,
-constexpr double worstGood = 0.15;   // and where no line asks for it, or one right under an end of an edge
+constexpr double worstGood = 0.15;   // and where no line asks for it
 constexpr double straight = -0.97;   // cosine: the angle at a vertex that is no corner
 constexpr std::size_t mostVertices = 8; // of a front face
 
@@ -187,10 +187,8 @@ bool Inserter::isValid(const Ring& ring, double worst) const {
     return true;
 }
 
-// Does no line ask for it, or is it right under an end of its edge?
-bool Inserter::isOptional(const Place& p) const {
-    return p.crossing >= 0 && (crossings_[std::size_t(p.crossing)].kind == SnapKind::none || crossings_[std::size_t(p.crossing)].underEnd);
-}
+// Does no line ask for it?
+bool Inserter::isOptional(const Place& p) const { return p.crossing >= 0 && crossings_[std::size_t(p.crossing)].kind == SnapKind::none; }
 
 bool Inserter::isOnBend(const Place& p) const { return p.crossing >= 0 && crossings_[std::size_t(p.crossing)].bend; }
 
