@@ -10,6 +10,7 @@ namespace {
 constexpr double onLine = 0.1;       // of h: a snapped node so near to its line stands on it
 constexpr double upon = 0.02;        // of h: a node so near to two parts stands on their border
 constexpr double nearEnd = 0.12;     // of an edge: crossings nearer to an end are that node's own business
+constexpr double pastEnd = 0.1;      // the same past an end, which leans over the line
 constexpr double farOff = 0.9;       // of an edge: crossings farther from it belong to another one
 constexpr double nearHeld = 0.2;     // of h: crossings nearer to an end that stands on another line are left
 constexpr double beforeEnd = 0.85;   // of an edge: where it is beside the line that its end stands on
@@ -179,7 +180,7 @@ EdgeCrossing Finder::on(std::int32_t edge) const {
     }
     // Beside another line, that one may be nearer to the edge.
     if (between.kind == SnapKind::line) c.wall = features.closestLine(c.beside ? c.wall : atNearest(), length).point;
-    if (!(c.t > 0 && c.t < 1)) return c;
+    if (!(c.t > -pastEnd && c.t < 1 + pastEnd)) return c;
     const auto isFrom = [&](std::size_t n) { return norm(c.wall - x[n]) > nearHeld * band.h[n]; };
     const double t = std::clamp(c.t, nearEnd, 1 - nearEnd);
     // Else an end leans over the line, as over the foot of a step whose upper edge it stands on: the place on the front is farther along.
