@@ -111,6 +111,46 @@ TEST(CellStar, CellsInsideOutAreInvalid) {
     EXPECT_LT(invalid, 20);
 }
 
+// Where pyramids are low, which is no fault, moves for another thing's sake must not trade that for what is one.
+TEST(CellStar, MayNotTradeLowPyramidsForFaults) {
+    QualityLimits limits;
+    limits.nonOrthogonality = 65, limits.skewness = 4;
+    std::mt19937 random(3);
+    const auto real = [&] { return static_cast<double>(random()) / 2147483648.0 - 1; };
+    int may = 0, trades = 0;
+    for (unsigned seed = 0; seed < 100; ++seed) {
+        PolyMesh mesh = block(seed, 0.75);
+        const Rows cellFaces = buildCellFaces(mesh);
+        const MeshFaults faults(mesh, cellFaces, limits);
+        CellStar star(mesh, cellFaces, faults.moments(), limits, 0);
+        const std::int32_t point = 31; // an inner one
+        std::int32_t user = 0;
+        for (std::int32_t c = 0; c < mesh.cells; ++c)
+            for (const std::int32_t f : cellFaces[c])
+                if (std::ranges::count(mesh.face(f), point) > 0) user = c;
+        star.gather({point}, {user});
+        const Badness before = star.judge();
+        const Vec3 from = mesh.points[point];
+        for (int i = 0; i < 100; ++i) {
+            mesh.points[point] = from + Vec3{real(), real(), real()} * 0.3;
+            const bool mayStand = star.mayStand(before);
+            const Badness now = star.judge();
+            if (now.invalid) {
+                EXPECT_FALSE(mayStand);
+                continue;
+            }
+            EXPECT_LE(now.beyond, now.worst);
+            may += mayStand;
+            const bool isNoWorse = now.worst <= std::max(nearLimit, before.worst) && (now.worst <= nearLimit || now.sum <= before.sum);
+            const bool addsFault = now.beyond > std::max(nearLimit, before.beyond);
+            EXPECT_EQ(mayStand, isNoWorse && !addsFault);
+            trades += isNoWorse && addsFault;
+        }
+    }
+    EXPECT_GT(may, 200);
+    EXPECT_GT(trades, 20);
+}
+
 // The star of one point: the cells that use it, found from any of them; judged with the point where it is now, and the same
 // as from fresh moments.
 TEST(CellStar, FollowsItsPoint) {
