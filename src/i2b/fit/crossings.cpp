@@ -179,7 +179,10 @@ EdgeCrossing Finder::on(std::int32_t edge) const {
         c.t = nearestOn(between.line, a, b, c.wall);
     }
     // Beside another line, that one may be nearer to the edge.
-    if (between.kind == SnapKind::line) c.wall = features.closestLine(c.beside ? c.wall : atNearest(), length).point;
+    if (between.kind == SnapKind::line) {
+        const FeatureIndex::Line line = features.closestLine(c.beside ? c.wall : atNearest(), length);
+        c.wall = line.point, c.onRim = line.isRim;
+    }
     if (!(c.t > -pastEnd && c.t < 1 + pastEnd)) return c;
     const auto isFrom = [&](std::size_t n) { return norm(c.wall - x[n]) > nearHeld * band.h[n]; };
     const double t = std::clamp(c.t, nearEnd, 1 - nearEnd);

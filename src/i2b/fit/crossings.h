@@ -23,6 +23,7 @@ struct EdgeCrossing {
     SnapKind kind = SnapKind::none;         // of the line; none: a bend
     Vec3 tangent;                           // unit, of the line or border
     bool beside = false;                    // an end of the edge stands on another line
+    bool onRim = false;                     // of a sheet
     bool bend = false;                      // away from lines
     bool alive = false;                     // false: there is none
 };

@@ -22,6 +22,7 @@ class Inserter {
     void lookForCrossings();
     std::vector<RoomWish> roomWanted(const std::vector<FaceCuts>& cuts) const;
     bool stepAsideWhereRefused(const std::vector<FaceCuts>& cuts);
+    bool mayKeepSome(const FaceCuts& cuts) const;
     bool prune(const std::vector<FaceCuts>& cuts);
     void apply(const std::vector<FaceCuts>& cuts);
 
@@ -48,19 +49,29 @@ std::vector<RoomWish> Inserter::roomWanted(const std::vector<FaceCuts>& cuts) co
     return wishes;
 }
 
+// May a face that cannot take all its cuts take those that lines ask for? Not round a rim: there one alone leaves the rest standing across it.
+bool Inserter::mayKeepSome(const FaceCuts& cuts) const {
+    bool anyOptional = false, anyRim = false;
+    for (const CutRing& piece : cuts.pieces) {
+        for (const CutPlace& p : piece) {
+            anyOptional = anyOptional || cutter_.isOptional(p);
+            anyRim = anyRim || (p.crossing >= 0 && crossings_[std::size_t(p.crossing)].onRim);
+        }
+    }
+    return anyOptional && !anyRim;
+}
+
 // Gives up crossings of faces that cannot take them, and those that end no cut; beside one on a line those that need not be come first.
 // False: nothing to give up.
 bool Inserter::prune(const std::vector<FaceCuts>& cuts) {
     std::vector<std::uint8_t> used(crossings_.size(), 0), refused(crossings_.size(), 0);
     parallelFor(cuts.size(), [&](std::size_t i) {
-        const bool anyOptional = !cuts[i].valid && std::any_of(cuts[i].pieces.begin(), cuts[i].pieces.end(), [&](const CutRing& piece) {
-            return std::any_of(piece.begin(), piece.end(), [&](const CutPlace& p) { return cutter_.isOptional(p); });
-        });
+        const bool keepsSome = !cuts[i].valid && mayKeepSome(cuts[i]);
         for (const CutRing& piece : cuts[i].pieces) {
             for (const CutPlace& p : piece) {
                 if (p.crossing < 0) continue;
                 if (p.isEnd) setFlag(used[std::size_t(p.crossing)]);
-                if (!cuts[i].valid && cutter_.isOptional(p) == anyOptional) setFlag(refused[std::size_t(p.crossing)]);
+                if (!cuts[i].valid && (!keepsSome || cutter_.isOptional(p))) setFlag(refused[std::size_t(p.crossing)]);
             }
         }
     });
