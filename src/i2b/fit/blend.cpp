@@ -143,6 +143,12 @@ double scaledJacobian(const Corner& c, const std::vector<Vec3>& x) {
     return l > 0 ? dot(cross(e1, e2), e3) / l : -1;
 }
 
+double worstCorner(const Band& band, std::size_t node, const std::vector<Vec3>& x) {
+    double worst = 1;
+    for (const std::int32_t c : band.cornersOf[node]) worst = std::min(worst, scaledJacobian(band.corners[static_cast<std::size_t>(c)], x));
+    return worst;
+}
+
 std::vector<std::uint8_t> nodesOfPoorCorners(const Band& band, const std::vector<Vec3>& x, double limit) {
     std::vector<std::uint8_t> poor(band.nodes(), 0);
     parallelFor(band.corners.size(), [&](std::size_t c) {

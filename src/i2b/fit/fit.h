@@ -71,6 +71,8 @@ std::vector<double> blend(const Band& band, const std::vector<Vec3>& start, cons
 // Corner quality: phi = 0.75 |J|^2 / (3 D^(2/3)) + 0.125 (D + 1/D), infinite where D <= 0; 1 for the ideal corner.
 double cornerEnergy(const Corner& corner, const std::vector<Vec3>& x);
 double scaledJacobian(const Corner& corner, const std::vector<Vec3>& x);
+// The least of a node's corners, at most 1.
+double worstCorner(const Band& band, std::size_t node, const std::vector<Vec3>& x);
 // Marks, per movable node, those of corners with a phi above the limit.
 std::vector<std::uint8_t> nodesOfPoorCorners(const Band& band, const std::vector<Vec3>& x, double limit);
 

@@ -8,18 +8,12 @@ namespace {
 
 constexpr double goodCorner = 0.2; // scaled Jacobian: corners that were as good stay so, worse ones do not get worse
 
-double worstCorner(const Band& band, const std::vector<Vec3>& x, std::size_t node) {
-    double worst = 1;
-    for (const std::int32_t c : band.cornersOf[node]) worst = std::min(worst, scaledJacobian(band.corners[static_cast<std::size_t>(c)], x));
-    return worst;
-}
-
 // Moves a node of the front, if that is well.
 bool stepOut(std::size_t node, const Vec3& step, const Band& band, const SurfaceIndex& index, std::vector<Vec3>& x, Front& front) {
     const Vec3 from = x[node];
-    const double before = worstCorner(band, x, node);
+    const double before = worstCorner(band, node, x);
     x[node] = from + withinSides(step, band.outside[node]);
-    if (index.firstHit(from, x[node]) || worstCorner(band, x, node) < std::min(before, goodCorner)) {
+    if (index.firstHit(from, x[node]) || worstCorner(band, node, x) < std::min(before, goodCorner)) {
         x[node] = from;
         return false;
     }

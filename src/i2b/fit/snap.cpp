@@ -3,15 +3,6 @@
 #include "i2b/fit/wall_views.h"
 
 namespace i2b {
-namespace {
-
-double worstCorner(const Band& band, std::size_t n, const std::vector<Vec3>& x) {
-    double worst = 1;
-    for (std::int32_t c : band.cornersOf[n]) worst = std::min(worst, scaledJacobian(band.corners[static_cast<std::size_t>(c)], x));
-    return worst;
-}
-
-} // namespace
 
 void snapExactly(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps,
                  std::vector<Vec3>& x, const EnergyOptions& options) {
