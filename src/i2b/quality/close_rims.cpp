@@ -230,7 +230,7 @@ ClosedRims RimCloser::run(std::int32_t firstLayerCell) {
 ClosedRims closeRims(PolyMesh& mesh, const Front& front, const FeatureGraph& features, const SurfaceIndex& index, const DictionaryLimits& limits, std::int32_t firstLayerCell) {
     const FeatureIndex rims(rimsOf(features));
     if (rims.empty()) return {};
-    const Wall wall = collectWall(mesh, {});
+    const Wall wall = collectWall(mesh, buildCellFaces(mesh), {});
     return RimCloser(mesh, front, wall, rims, index, limits).run(firstLayerCell);
 }
 

@@ -77,7 +77,7 @@ std::vector<std::uint8_t> measureFaces(const Wall& wall, const SurfaceIndex& ind
 FitReport measureFit(const PolyMesh& mesh, const SurfaceIndex& index, const FeatureGraph& features,
                      const std::vector<std::string>& patches, WallNodes* nodes) {
     FitReport report;
-    Wall wall = collectWall(mesh, patches);
+    Wall wall = collectWall(mesh, buildCellFaces(mesh), patches);
     report.wallFaces = static_cast<std::int64_t>(wall.faces.size());
     report.wallNodes = static_cast<std::int64_t>(wall.nodes.size());
     if (wall.faces.empty() || index.surface().triangles.empty()) return report;

@@ -1,9 +1,12 @@
 // How well the wall of a mesh follows the geometry.
 //
-// h, the local wall cell size: of a wall node the median size of the wall faces around it, a face's size
-// being the median length of its edges; of a wall face the median of its nodes'. (Of two in the middle the
-// smaller. Of a face without width, as at the rim of a sheet, whose longest edge is over five times that, the longest.
-// Nothing of a lattice is used, so the same measure judges any mesh.)
+// h, the local wall cell size, is that of the cells from which the wall was made, whatever became of its own faces: of a
+// wall face the size of the first cell inwards that begins 1.25 edges behind it, which is none of its layers and hardly
+// bent to the wall, and that size the upper quartile of the cell's edges, so that squeezed ones, as in gaps, do not count.
+// Of a wall node the median of the wall faces around it; of a wall face that of its nodes. (Of two in the middle the smaller.)
+// Nothing of a lattice is used, so the same measure judges any mesh; of our own it is the size of the lattice's cells to
+// within some 2 %. The wall's own edges are no measure: on a slope they are up to 0.6 times as long, and shorter where
+// faces are divided.
 //
 // On the geometry: within 0.01 h of it.
 //

@@ -7,25 +7,91 @@ namespace i2b {
 namespace {
 
 constexpr double smallestSize = 1e-100; // m, so that collapsed faces divide by something
-constexpr double strip = 5; // times its median edge is the longest of a face without width, as at the rim of a sheet: its length counts
+constexpr double depth = 1.25; // edges of a wall face: a cell that begins as far behind it is none of its layers, and hardly bent to the wall
+constexpr double upper = 0.75; // of a cell's edges are no longer than its size: those along which it is squeezed do not count
+constexpr int mostLayers = 100;
+constexpr std::size_t mostFaces = 1000; // of a cell with more the wall face alone tells a size: each of its faces would be held against all
 
 bool isChosen(const Patch& patch, const std::vector<std::string>& names) {
     return names.empty() ? patch.type == "wall"
                          : std::find(names.begin(), names.end(), patch.name) != names.end();
 }
 
-// The lower one of two: a node pulled away lengthens half the edges around it, and must not be judged by
-// those.
-double median(std::vector<double>& values) {
+// The value that this share of them does not exceed; of a few, the lower one.
+double quantile(std::vector<double>& values, double share) {
     if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
 }
 
-// Of each face the median of its edges, of strips the longest; of each node the median of the faces around it; of each face that of
+double median(std::vector<double>& values) { return quantile(values, 0.5); }
+
+void addEdges(const PolyMesh& mesh, std::int32_t face, std::vector<double>& lengths) {
+    const auto points = mesh.face(face);
+    const Vec3* from = &mesh.points[static_cast<std::size_t>(points.back())];
+    for (const std::int32_t v : points) {
+        const Vec3* to = &mesh.points[static_cast<std::size_t>(v)];
+        lengths.push_back(norm(*to - *from));
+        from = to;
+    }
+}
+
+Vec3 middleOf(const PolyMesh& mesh, std::int32_t face) {
+    Vec3 sum;
+    const auto points = mesh.face(face);
+    for (const std::int32_t v : points) sum += mesh.points[static_cast<std::size_t>(v)];
+    return (1.0 / static_cast<double>(points.size())) * sum;
+}
+
+// From a wall face inwards, cell by cell, to the first one that is none of its layers.
+class WayIn {
+  public:
+    WayIn(const PolyMesh& mesh, const Rows& cellFaces) : mesh_(mesh), cellFaces_(cellFaces) {}
+
+    // m, of that cell; where the way ends before it, as in a gap between two walls, of the last one.
+    double sizeBehind(std::int32_t wallFace, const Vec3& area) {
+        lengths_.clear();
+        addEdges(mesh_, wallFace, lengths_);
+        const double enough = depth * median(lengths_);
+        const Vec3 inwards = -normalized(area);
+        const double start = dot(middleOf(mesh_, wallFace), inwards);
+        std::int32_t face = wallFace, cell = mesh_.owner[static_cast<std::size_t>(face)];
+        for (int step = 0; step < mostLayers && cellFaces_[cell].size() <= mostFaces; ++step) {
+            const std::int32_t next = opposite(cell, face, inwards);
+            if (next < 0 || next >= mesh_.internalFaces()) break;
+            const auto f = static_cast<std::size_t>(next);
+            cell = mesh_.owner[f] == cell ? mesh_.neighbour[f] : mesh_.owner[f];
+            face = next;
+            if (dot(middleOf(mesh_, face), inwards) - start >= enough) break;
+        }
+        if (cellFaces_[cell].size() > mostFaces) return median(lengths_); // of the wall face
+        lengths_.clear();
+        for (const std::int32_t f : cellFaces_[cell]) addEdges(mesh_, f, lengths_);
+        return quantile(lengths_, upper);
+    }
+
+  private:
+    // Of the cell's faces that have no point of this one the innermost, or -1.
+    std::int32_t opposite(std::int32_t cell, std::int32_t face, const Vec3& inwards) const {
+        const auto points = mesh_.face(face);
+        std::int32_t best = -1;
+        for (const std::int32_t f : cellFaces_[cell]) {
+            const auto other = mesh_.face(f);
+            if (std::find_first_of(points.begin(), points.end(), other.begin(), other.end()) != points.end()) continue;
+            if (best < 0 || dot(middleOf(mesh_, f) - middleOf(mesh_, best), inwards) > 0) best = f;
+        }
+        return best;
+    }
+
+    const PolyMesh& mesh_;
+    const Rows& cellFaces_;
+    std::vector<double> lengths_;
+};
+
+// Of each face the size of the cell behind it; of each node the median of the faces around it; of each face that of
 // its nodes.
-void measureSizes(const PolyMesh& mesh, Wall& wall) {
+void measureSizes(const PolyMesh& mesh, const Rows& cellFaces, Wall& wall) {
     struct Around {
         std::int32_t node;
         double size; // of a face
@@ -34,15 +100,13 @@ void measureSizes(const PolyMesh& mesh, Wall& wall) {
     std::vector<std::size_t> start(wall.faces.size());
     for (std::size_t i = 0; i < start.size(); ++i) start[i] = mesh.face(wall.faces[i]).size();
     std::vector<Around> around(exclusiveScan(start));
-    parallelFor(wall.faces.size(), [&](std::size_t i) {
-        const auto face = mesh.face(wall.faces[i]);
-        std::vector<double> lengths;
-        for (std::size_t k = 0; k < face.size(); ++k)
-            lengths.push_back(norm(mesh.points[static_cast<std::size_t>(face[(k + 1) % face.size()])] -
-                                   mesh.points[static_cast<std::size_t>(face[k])]));
-        const double longest = *std::max_element(lengths.begin(), lengths.end()), middle = median(lengths);
-        const double size = std::max(longest > strip * middle ? longest : middle, smallestSize);
-        for (std::size_t k = 0; k < face.size(); ++k) around[start[i] + k] = {face[k], size};
+    parallelChunks(wall.faces.size(), 512, [&](std::size_t begin, std::size_t end, std::size_t) {
+        WayIn way(mesh, cellFaces);
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto face = mesh.face(wall.faces[i]);
+            const double size = std::max(way.sizeBehind(wall.faces[i], wall.shapes[i].area), smallestSize);
+            for (std::size_t k = 0; k < face.size(); ++k) around[start[i] + k] = {face[k], size};
+        }
     });
     tbb::parallel_sort(around);
     for (std::size_t i = 0, end = 0; i < around.size(); i = end) {
@@ -65,7 +129,7 @@ std::size_t nodePlace(const Wall& wall, std::int32_t point) {
     return static_cast<std::size_t>(std::lower_bound(wall.nodes.begin(), wall.nodes.end(), point) - wall.nodes.begin());
 }
 
-Wall collectWall(const PolyMesh& mesh, const std::vector<std::string>& patches) {
+Wall collectWall(const PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::string>& patches) {
     Wall wall;
     for (const Patch& patch : mesh.patches)
         if (isChosen(patch, patches))
@@ -81,7 +145,7 @@ Wall collectWall(const PolyMesh& mesh, const std::vector<std::string>& patches) 
     tbb::parallel_sort(wall.edges);
     wall.shapes.resize(wall.faces.size());
     parallelFor(wall.faces.size(), [&](std::size_t i) { wall.shapes[i] = measureFace(mesh, wall.faces[i]); });
-    measureSizes(mesh, wall);
+    measureSizes(mesh, cellFaces, wall);
     return wall;
 }
 

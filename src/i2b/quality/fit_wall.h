@@ -24,8 +24,8 @@ struct Wall {
     std::vector<double> nodeH, faceH; // m
 };
 
-// Of the patches named, or of all patches of type wall; with shapes and sizes.
-Wall collectWall(const PolyMesh& mesh, const std::vector<std::string>& patches);
+// Of the patches named, or of all patches of type wall; with shapes and sizes. cellFaces: buildCellFaces().
+Wall collectWall(const PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::string>& patches);
 
 // Where a point of the mesh is in wall.nodes.
 std::size_t nodePlace(const Wall& wall, std::int32_t point);

@@ -45,7 +45,7 @@ bool Optimiser::keepsFolds(const MeshNode& node, const Vec3& to) const {
     return true;
 }
 
-// Of the faces at a wall vertex, as the fit of a mesh is judged by: the median, of each the median of its edges. m
+// Of the faces at a wall vertex the median, of each the median of its edges: at most what the fit is judged by, mostly. m
 double Optimiser::sizeAt(std::int32_t vertex) const {
     const FrontMesh& wall = front_.mesh;
     std::vector<double> sizes, edges;

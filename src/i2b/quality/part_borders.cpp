@@ -138,7 +138,7 @@ std::vector<std::uint8_t> nearBorders(const PolyMesh& mesh, const Wall& wall, co
 
 void measurePartBorders(const PolyMesh& mesh, const SurfaceIndex& index, const std::vector<std::string>& names, FitReport& report) {
     if (index.surface().parts.size() < 2) return;
-    const Wall wall = collectWall(mesh, names);
+    const Wall wall = collectWall(mesh, buildCellFaces(mesh), names);
     if (wall.faces.empty()) return;
     const BorderLines patches = patchEdges(mesh, wall, partsOf(mesh, wall, index.surface()));
     if (patches.parts.empty()) return;
