@@ -96,18 +96,19 @@ void judge(MeshResult& out, const FeatureGraph& features, const FitSummary& fitt
         fence.leave();
     });
     out.report.quality = stage(
-        context, "quality", [&] { return measureQuality(out.mesh, {}, limits, keepCells ? &out.cells : nullptr); },
+        context, "quality", [&] { return measureQuality(out.mesh, {}, limits, &out.cells); },
         [](const QualityReport& q) { return q.cells; });
     out.report.fit = stage(
         context, "fit quality",
         [&] {
-            const FitReport fit = measureFit(out.mesh, index, features, {}, &out.wallNodes);
+            const FitReport fit = measureFit(out.mesh, index, features, {}, &out.wallNodes, &out.cells.faces);
             // Wall points follow each other as the vertices of the front do.
             out.offCauses = settleCauses(out.wallNodes, fitted.offCauses, repaired.movedWalls);
             out.report.offGeometry = listOffPlaces(out.mesh, out.wallNodes, out.offCauses, index);
             return fit;
         },
         [](const FitReport& f) { return f.wallNodes; });
+    if (!keepCells) out.cells = {};
     out.report.stages = context.stages();
     out.report.cells = out.mesh.cells;
     out.report.faces = out.mesh.faces();

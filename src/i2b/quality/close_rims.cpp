@@ -46,8 +46,8 @@ FeatureGraph rimsOf(const FeatureGraph& features) {
 
 class RimCloser {
   public:
-    RimCloser(PolyMesh& mesh, const Front& front, const Wall& wall, const FeatureIndex& rims, const SurfaceIndex& index, const DictionaryLimits& limits)
-        : mesh_(mesh), front_(front), wall_(wall), rims_(rims), index_(index), limits_(limits), cellFaces_(buildCellFaces(mesh)), star_(mesh, cellFaces_) {
+    RimCloser(PolyMesh& mesh, const Rows& cellFaces, const Front& front, const Wall& wall, const FeatureIndex& rims, const SurfaceIndex& index, const DictionaryLimits& limits)
+        : mesh_(mesh), front_(front), wall_(wall), rims_(rims), index_(index), limits_(limits), cellFaces_(cellFaces), star_(mesh, cellFaces_) {
         cellAt_.assign(wall.nodes.size(), -1);
         for (const WallEdge& e : wall.edges)
             for (const std::int32_t p : {e.a, e.b}) cellAt_[nodePlace(wall, p)] = mesh.owner[Index(wall.faces[Index(e.face)])];
@@ -83,7 +83,7 @@ class RimCloser {
     const FeatureIndex& rims_;
     const SurfaceIndex& index_;
     const DictionaryLimits& limits_;
-    Rows cellFaces_;
+    const Rows& cellFaces_;
     RimStar star_;
     bool anyJoined_ = false;
     std::vector<std::int32_t> cellAt_; // per wall node, one that uses it
@@ -230,8 +230,9 @@ ClosedRims RimCloser::run(std::int32_t firstLayerCell) {
 ClosedRims closeRims(PolyMesh& mesh, const Front& front, const FeatureGraph& features, const SurfaceIndex& index, const DictionaryLimits& limits, std::int32_t firstLayerCell) {
     const FeatureIndex rims(rimsOf(features));
     if (rims.empty()) return {};
-    const Wall wall = collectWall(mesh, buildCellFaces(mesh), {});
-    return RimCloser(mesh, front, wall, rims, index, limits).run(firstLayerCell);
+    const Rows cellFaces = buildCellFaces(mesh);
+    const Wall wall = collectWall(mesh, cellFaces, {});
+    return RimCloser(mesh, cellFaces, front, wall, rims, index, limits).run(firstLayerCell);
 }
 
 } // namespace i2b

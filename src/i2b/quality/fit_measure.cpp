@@ -75,9 +75,10 @@ std::vector<std::uint8_t> measureFaces(const Wall& wall, const SurfaceIndex& ind
 } // namespace
 
 FitReport measureFit(const PolyMesh& mesh, const SurfaceIndex& index, const FeatureGraph& features,
-                     const std::vector<std::string>& patches, WallNodes* nodes) {
+                     const std::vector<std::string>& patches, WallNodes* nodes, const Rows* cellFaces) {
     FitReport report;
-    Wall wall = collectWall(mesh, buildCellFaces(mesh), patches);
+    const Rows made = cellFaces ? Rows{} : buildCellFaces(mesh);
+    Wall wall = collectWall(mesh, cellFaces ? *cellFaces : made, patches);
     report.wallFaces = static_cast<std::int64_t>(wall.faces.size());
     report.wallNodes = static_cast<std::int64_t>(wall.nodes.size());
     if (wall.faces.empty() || index.surface().triangles.empty()) return report;

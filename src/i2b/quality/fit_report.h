@@ -23,7 +23,7 @@
 // Tilted: of the wall faces whose centre is more than h from every edge of 40 degrees and more, the share
 // whose normal is over 25 (45) degrees off that of the geometry closest to the centre, orientation ignored.
 #pragma once
-#include "i2b/assemble/poly_mesh.h"
+#include "i2b/assemble/mesh_topology.h"
 #include "i2b/geometry/features.h"
 #include "i2b/geometry/surface_index.h"
 #include <string>
@@ -56,9 +56,9 @@ struct WallNodes {
 
 // Of the mesh's wall patches: those named, or all patches of type wall. features must have been built with an
 // angle of at most 40 degrees for the last figures to mean what is said above; all is the same on any number
-// of threads. nodes: filled where given and there is something to measure.
+// of threads. nodes: filled where given and there is something to measure. cellFaces: buildCellFaces(), where it is at hand.
 FitReport measureFit(const PolyMesh& mesh, const SurfaceIndex& index, const FeatureGraph& features,
-                     const std::vector<std::string>& patches = {}, WallNodes* nodes = nullptr);
+                     const std::vector<std::string>& patches = {}, WallNodes* nodes = nullptr, const Rows* cellFaces = nullptr);
 
 // The borders, which measureFit() leaves out: they take longer than all the rest. Patches are told by the names of the
 // geometry's parts.
