@@ -2,6 +2,8 @@
 // layers, whatever became of the wall's own faces.
 #include "i2b/quality/fit_wall.h"
 #include "quality/cell_mesh.h"
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
 
@@ -76,6 +78,15 @@ TEST(FitWall, FacesOfASlopeDoNotMakeItSmaller) {
 
 // One cell across a gap of 0.3: squeezed along one axis, it has the size of the other two.
 TEST(FitWall, GapsDoNotMakeItSmaller) { expectAllSizes(columns({0, 0.1, 0.2, 0.3}, asItIs), 1, 1e-12); }
+
+// A face without area, all of whose points are on one line, does not lead anywhere: its cell's own edges count.
+TEST(FitWall, CollapsedFacesHaveTheSizeOfTheirCell) {
+    const PolyMesh mesh = test::columnOf({{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 0, 0}}, test::square(1), test::square(3)});
+    const Wall wall = collectWall(mesh, buildCellFaces(mesh), {});
+    const auto collapsed = std::ranges::find_if(wall.shapes, [](const FaceShape& s) { return norm2(s.area) == 0; });
+    ASSERT_NE(collapsed, wall.shapes.end());
+    for (const double h : wall.faceH) EXPECT_TRUE(h >= 1 && h <= 2) << h;
+}
 
 // A cell of four faces has no other side to go on to: its own edges count.
 TEST(FitWall, TetrahedraHaveTheirOwnSize) {

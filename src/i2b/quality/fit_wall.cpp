@@ -56,8 +56,9 @@ class WayIn {
         const double enough = depth * median(lengths_);
         const Vec3 inwards = -normalized(area);
         const double start = dot(middleOf(mesh_, wallFace), inwards);
+        const int most = norm2(inwards) > 0 ? mostLayers : 0; // a collapsed face has no way in
         std::int32_t face = wallFace, cell = mesh_.owner[static_cast<std::size_t>(face)];
-        for (int step = 0; step < mostLayers && cellFaces_[cell].size() <= mostFaces; ++step) {
+        for (int step = 0; step < most && cellFaces_[cell].size() <= mostFaces; ++step) {
             const std::int32_t next = opposite(cell, face, inwards);
             if (next < 0 || next >= mesh_.internalFaces()) break;
             const auto f = static_cast<std::size_t>(next);
