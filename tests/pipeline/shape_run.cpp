@@ -68,11 +68,12 @@ FeatureGraph sharpLines(const Surface& soup, const ShapeGeometry& g) {
 
 // Of cracks the line counts that the wall follows best.
 FitReport fitOf(const PolyMesh& mesh, const SurfaceIndex& index, ShapeGeometry g) {
-    FitReport best = measureFit(mesh, index, sharpLines(index.surface(), g));
+    const Rows cellFaces = buildCellFaces(mesh);
+    FitReport best = measureFit(mesh, cellFaces, index, sharpLines(index.surface(), g));
     for (std::size_t crack = 0; crack < g.rims.size(); ++crack)
         for (const auto& rim : g.rims[crack]) {
             const auto before = std::exchange(g.lines[crack], rim);
-            const FitReport fit = measureFit(mesh, index, sharpLines(index.surface(), g));
+            const FitReport fit = measureFit(mesh, cellFaces, index, sharpLines(index.surface(), g));
             if (fit.featureCaptureFraction > best.featureCaptureFraction) best = fit;
             else g.lines[crack] = before;
         }

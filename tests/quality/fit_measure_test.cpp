@@ -63,8 +63,9 @@ PolyMesh cubeWall(const std::function<Vec3(Vec3)>& move) {
 FitReport fit(const PolyMesh& mesh, const Surface& surface,
               const std::vector<std::string>& patches = {"body", "top"}) {
     const SurfaceIndex index(surface);
-    FitReport report = measureFit(mesh, index, buildFeatureGraph(surface, {}), patches);
-    measurePartBorders(mesh, index, patches, report);
+    const Rows cellFaces = buildCellFaces(mesh);
+    FitReport report = measureFit(mesh, cellFaces, index, buildFeatureGraph(surface, {}), patches);
+    measurePartBorders(mesh, cellFaces, index, patches, report);
     return report;
 }
 

@@ -17,7 +17,7 @@ constexpr Want want{0.005, 0.95};
 // quads.
 constexpr Want concaveWant{0.03, 0.5}, leantConcaveWant{0.01, 0.75};
 constexpr double leastBulge = 0.06;  // of h: of the front's quad at the cut, for the cell behind to stay convex as nodes go on moving
-constexpr double worstCorner = 0.1;  // scaled Jacobian that the prisms of the pieces must have
+constexpr double leastCorner = 0.1;  // scaled Jacobian that the prisms of the pieces must have
 const double leant = std::cos(6 * 3.14159265358979323846 / 180);
 
 bool brings(const Want& wanted, double before, double after, double h) { return before > wanted.off * h && after < wanted.gain * before; }
@@ -44,7 +44,7 @@ bool BendCutter::isSound(std::size_t a, std::size_t b, std::size_t c) const {
     // Over a divided edge and the vertex in it a piece would have a face on some of the points of the next one.
     const std::array vertices{static_cast<std::int32_t>(a), static_cast<std::int32_t>(b), static_cast<std::int32_t>(c)};
     if (front_.areOnOneEdge(vertices)) return false;
-    return std::min({front_.cornerAt(a, c, b), front_.cornerAt(b, a, c), front_.cornerAt(c, b, a)}) >= worstCorner;
+    return std::min({front_.cornerAt(a, c, b), front_.cornerAt(b, a, c), front_.cornerAt(c, b, a)}) >= leastCorner;
 }
 
 // Does the edge between the front's pieces stick into the cell behind it?

@@ -101,7 +101,7 @@ void judge(MeshResult& out, const FeatureGraph& features, const FitSummary& fitt
     out.report.fit = stage(
         context, "fit quality",
         [&] {
-            const FitReport fit = measureFit(out.mesh, index, features, {}, &out.wallNodes, &out.cells.faces);
+            const FitReport fit = measureFit(out.mesh, out.cells.faces, index, features, {}, &out.wallNodes);
             // Wall points follow each other as the vertices of the front do.
             out.offCauses = settleCauses(out.wallNodes, fitted.offCauses, repaired.movedWalls);
             out.report.offGeometry = listOffPlaces(out.mesh, out.wallNodes, out.offCauses, index);

@@ -4,6 +4,7 @@
 #include "i2b/geometry/surface_index.h"
 #include "i2b/program/print.h"
 #include "i2b/program/runs.h"
+#include "i2b/quality/cell_quality.h"
 #include "i2b/quality/fit_report.h"
 #include "i2b/quality/patch_names.h"
 #include "i2b/quality/quality_report.h"
@@ -13,7 +14,7 @@
 namespace i2b {
 namespace {
 
-FitReport fitTo(const PolyMesh& mesh, const GeometryOptions& geometry, const std::vector<std::string>& patches,
+FitReport fitTo(const PolyMesh& mesh, const Rows& cellFaces, const GeometryOptions& geometry, const std::vector<std::string>& patches,
                 Run& run) {
     GeometryNotes notes;
     Surface surface;
@@ -25,8 +26,8 @@ FitReport fitTo(const PolyMesh& mesh, const GeometryOptions& geometry, const std
     Stage stage(run.context, "fit");
     const SurfaceIndex index(surface);
     const FeatureGraph features = buildFeatureGraph(surface, {geometry.featureAngle, 0});
-    FitReport fit = measureFit(mesh, index, features, patches);
-    measurePartBorders(mesh, index, patches, fit);
+    FitReport fit = measureFit(mesh, cellFaces, index, features, patches);
+    measurePartBorders(mesh, cellFaces, index, patches, fit);
     stage.items = static_cast<std::uint64_t>(fit.wallFaces);
     return fit;
 }
@@ -41,15 +42,18 @@ int runCheck(const CommandLine& line, Run& run) {
         stage.items = static_cast<std::uint64_t>(mesh.cells);
     }
     const std::vector<std::string> patches = patchesNamed(mesh.patches, line.patches); // complains before the work
+    const bool hasGeometry = !line.given.options.geometry.files.empty();
+    CellGeometry cells; // where the fit is asked for
     QualityReport quality;
     {
         Stage stage(run.context, "quality");
-        quality = measureQuality(mesh, {}, line.given.options.quality);
+        quality = measureQuality(mesh, {}, line.given.options.quality, hasGeometry ? &cells : nullptr);
+        cells.moments = {};
         stage.items = static_cast<std::uint64_t>(mesh.cells);
     }
     fmt::print(run.out, "{}", formatQuality(quality));
-    if (!line.given.options.geometry.files.empty())
-        fmt::print(run.out, "\n{}", fitText(fitTo(mesh, line.given.options.geometry, patches, run)));
+    if (hasGeometry)
+        fmt::print(run.out, "\n{}", fitText(fitTo(mesh, cells.faces, line.given.options.geometry, patches, run)));
     return quality.ok() ? 0 : 1;
 }
 

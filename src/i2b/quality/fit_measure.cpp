@@ -74,11 +74,10 @@ std::vector<std::uint8_t> measureFaces(const Wall& wall, const SurfaceIndex& ind
 
 } // namespace
 
-FitReport measureFit(const PolyMesh& mesh, const SurfaceIndex& index, const FeatureGraph& features,
-                     const std::vector<std::string>& patches, WallNodes* nodes, const Rows* cellFaces) {
+FitReport measureFit(const PolyMesh& mesh, const Rows& cellFaces, const SurfaceIndex& index, const FeatureGraph& features,
+                     const std::vector<std::string>& patches, WallNodes* nodes) {
     FitReport report;
-    const Rows made = cellFaces ? Rows{} : buildCellFaces(mesh);
-    Wall wall = collectWall(mesh, cellFaces ? *cellFaces : made, patches);
+    Wall wall = collectWall(mesh, cellFaces, patches);
     report.wallFaces = static_cast<std::int64_t>(wall.faces.size());
     report.wallNodes = static_cast<std::int64_t>(wall.nodes.size());
     if (wall.faces.empty() || index.surface().triangles.empty()) return report;

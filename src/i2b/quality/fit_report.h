@@ -56,12 +56,12 @@ struct WallNodes {
 
 // Of the mesh's wall patches: those named, or all patches of type wall. features must have been built with an
 // angle of at most 40 degrees for the last figures to mean what is said above; all is the same on any number
-// of threads. nodes: filled where given and there is something to measure. cellFaces: buildCellFaces(), where it is at hand.
-FitReport measureFit(const PolyMesh& mesh, const SurfaceIndex& index, const FeatureGraph& features,
-                     const std::vector<std::string>& patches = {}, WallNodes* nodes = nullptr, const Rows* cellFaces = nullptr);
+// of threads. nodes: filled where given and there is something to measure. cellFaces: buildCellFaces().
+FitReport measureFit(const PolyMesh& mesh, const Rows& cellFaces, const SurfaceIndex& index, const FeatureGraph& features,
+                     const std::vector<std::string>& patches = {}, WallNodes* nodes = nullptr);
 
 // The borders, which measureFit() leaves out: they take longer than all the rest. Patches are told by the names of the
 // geometry's parts.
-void measurePartBorders(const PolyMesh& mesh, const SurfaceIndex& index, const std::vector<std::string>& patches, FitReport& report);
+void measurePartBorders(const PolyMesh& mesh, const Rows& cellFaces, const SurfaceIndex& index, const std::vector<std::string>& patches, FitReport& report);
 
 } // namespace i2b

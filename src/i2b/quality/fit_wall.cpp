@@ -1,5 +1,6 @@
 #include "i2b/quality/fit_wall.h"
 #include "i2b/core/parallel.h"
+#include "i2b/core/quantile.h"
 #include <algorithm>
 #include <tbb/parallel_sort.h>
 
@@ -16,16 +17,6 @@ bool isChosen(const Patch& patch, const std::vector<std::string>& names) {
     return names.empty() ? patch.type == "wall"
                          : std::find(names.begin(), names.end(), patch.name) != names.end();
 }
-
-// The value that this share of them does not exceed; of a few, the lower one.
-double quantile(std::vector<double>& values, double share) {
-    if (values.empty()) return 0;
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-}
-
-double median(std::vector<double>& values) { return quantile(values, 0.5); }
 
 void addEdges(const PolyMesh& mesh, std::int32_t face, std::vector<double>& lengths) {
     const auto points = mesh.face(face);

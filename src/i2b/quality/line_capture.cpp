@@ -1,5 +1,6 @@
 #include "i2b/quality/line_capture.h"
 #include "i2b/core/parallel.h"
+#include "i2b/core/quantile.h"
 #include <algorithm>
 
 namespace i2b {
@@ -161,9 +162,8 @@ LineSamples captureLines(const PolyMesh& mesh, const Wall& wall, const Surface& 
     if (lines.triangles.empty()) return {};
     std::vector<double> sizes = wall.faceH;
     const double largestH = *std::max_element(sizes.begin(), sizes.end());
-    const auto small = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 20); // a few slivers must not set the length of the pieces
-    std::nth_element(sizes.begin(), small, sizes.end());
-    std::vector<Piece> pieces = cutPieces(lines, 2 * *small);
+    const double small = quantile(sizes, 0.05); // a few slivers must not set the length of the pieces
+    std::vector<Piece> pieces = cutPieces(lines, 2 * small);
     double farthest = 0;
     for (const Piece& p : pieces) farthest = std::max(farthest, largestH / 2 + (p.to - p.from));
     std::vector<std::uint32_t> faceOf;

@@ -1,4 +1,5 @@
 // Moves that make faces divide into tetrahedra.
+#include "i2b/core/quantile.h"
 #include "i2b/fit/corner.h"
 #include "i2b/quality/optimise_worker.h"
 #include <cmath>
@@ -49,11 +50,6 @@ bool Optimiser::keepsFolds(const MeshNode& node, const Vec3& to) const {
 double Optimiser::sizeAt(std::int32_t vertex) const {
     const FrontMesh& wall = front_.mesh;
     std::vector<double> sizes, edges;
-    const auto median = [](std::vector<double>& v) {
-        const auto middle = v.begin() + static_cast<std::ptrdiff_t>((v.size() - 1) / 2);
-        std::nth_element(v.begin(), middle, v.end());
-        return *middle;
-    };
     for (auto f : wall.vf_range(FrontMesh::VertexHandle(vertex))) {
         edges.clear();
         for (auto he : wall.fh_range(f))

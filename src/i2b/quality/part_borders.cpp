@@ -1,4 +1,5 @@
 #include "i2b/core/parallel.h"
+#include "i2b/core/quantile.h"
 #include "i2b/quality/border_lines.h"
 #include "i2b/quality/line_capture.h"
 #include <algorithm>
@@ -136,15 +137,14 @@ std::vector<std::uint8_t> nearBorders(const PolyMesh& mesh, const Wall& wall, co
 
 } // namespace
 
-void measurePartBorders(const PolyMesh& mesh, const SurfaceIndex& index, const std::vector<std::string>& names, FitReport& report) {
+void measurePartBorders(const PolyMesh& mesh, const Rows& cellFaces, const SurfaceIndex& index, const std::vector<std::string>& names, FitReport& report) {
     if (index.surface().parts.size() < 2) return;
-    const Wall wall = collectWall(mesh, buildCellFaces(mesh), names);
+    const Wall wall = collectWall(mesh, cellFaces, names);
     if (wall.faces.empty()) return;
     const BorderLines patches = patchEdges(mesh, wall, partsOf(mesh, wall, index.surface()));
     if (patches.parts.empty()) return;
     std::vector<double> sizes = wall.faceH;
-    std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
-    const BorderLines borders = borderLines(index, nearBorders(mesh, wall, index), touching * sizes[sizes.size() / 2]);
+    const BorderLines borders = borderLines(index, nearBorders(mesh, wall, index), touching * median(sizes));
     const SurfaceIndex lineIndex(borders.lines), patchIndex(patches.lines);
     const auto flowAt = [&](const WallPlace& at) { return flowOver(wall, at, overWall * at.h); };
     const auto sidesAt = [&](const Vec3& p, std::uint32_t line, const WallPlace& at) {
