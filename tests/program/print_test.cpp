@@ -34,6 +34,19 @@ TEST(SummaryText, NamesTheWorstPlaces) {
     EXPECT_THAT(summaryText(report), HasSubstr("\n1 place where the wall is over 0.01 h off: 1 node at (1.5 0 -2) on part0, up to 0.25 h, sheet_between\n"));
 }
 
+// The same of lost edges: how many stretches, how long in all, and the three longest.
+TEST(SummaryText, NamesTheLongestLostEdges) {
+    RunReport report = sample();
+    EXPECT_THAT(summaryText(report), Not(HasSubstr("lost")));
+    LostEdges& lost = report.fit->lostEdges;
+    for (int i = 0; i < 4; ++i) lost.first.push_back({0.5 / (i + 1), {1.5, double(i), -2}, {}, "part" + std::to_string(i)});
+    lost.total = 9, lost.length = 1.25;
+    EXPECT_THAT(summaryText(report), HasSubstr("\n9 places where sharp edges are lost, 1.2 m in all: 0.5 m at (1.5 0 -2) on part0; "
+                                               "0.25 m at (1.5 1 -2) on part1; 0.17 m at (1.5 2 -2) on part2; ...\n"));
+    lost.first.resize(1), lost.total = 1, lost.length = 0.5;
+    EXPECT_THAT(fitText(*report.fit), HasSubstr("\n    1 place where sharp edges are lost, 0.5 m in all: 0.5 m at (1.5 0 -2) on part0\n"));
+}
+
 // Checks that fail by name and number, those that only warn not; and what is beyond the limits of the dictionary.
 TEST(SummaryText, NamesTheChecksThatFail) {
     RunReport report = sample();

@@ -264,23 +264,49 @@ TEST(FitMeasure, bordersOfWhatIsHiddenAreNotAskedFor) {
     EXPECT_EQ(fin(1.4), without);
 }
 
+// A box, and a block of 0.5 x 0.5 from one height to another over its middle.
+Surface boxWithBlock(double low, double high) {
+    Surface s = box(1);
+    const Surface block = box(1);
+    const auto first = static_cast<std::uint32_t>(s.points.size());
+    for (const Vec3& p : block.points) s.points.push_back({0.23 + 0.5 * p.x, 0.23 + 0.5 * p.y, low + (high - low) * p.z});
+    for (const auto& t : block.triangles) s.triangles.push_back({first + t[0], first + t[1], first + t[2]}), s.partOf.push_back(0);
+    return s;
+}
+
 // Edges of a block behind the wall, 0.2 h away, are none that the wall could have; those of one before it are missed.
 TEST(FitMeasure, sharpEdgesThatAreHiddenAreNotAskedFor) {
     const PolyMesh mesh = cubeWall([](Vec3 p) { return p; });
     const FitReport without = fit(mesh, box(1));
-    const auto withBlock = [&](double low, double high) {
-        Surface s = box(1);
-        const Surface block = box(1);
-        const auto first = static_cast<std::uint32_t>(s.points.size());
-        for (const Vec3& p : block.points) s.points.push_back({0.23 + 0.5 * p.x, 0.23 + 0.5 * p.y, low + (high - low) * p.z});
-        for (const auto& t : block.triangles) s.triangles.push_back({first + t[0], first + t[1], first + t[2]}), s.partOf.push_back(0);
-        return fit(mesh, s);
-    };
-    const FitReport behind = withBlock(1 + 0.2 * h, 1.5), before = withBlock(0.5, 1 - 0.2 * h);
+    const FitReport behind = fit(mesh, boxWithBlock(1 + 0.2 * h, 1.5)), before = fit(mesh, boxWithBlock(0.5, 1 - 0.2 * h));
     EXPECT_EQ(behind.featureSamples, without.featureSamples);
     EXPECT_DOUBLE_EQ(behind.featureCaptureFraction, 1);
     EXPECT_GT(before.featureSamples, without.featureSamples + 30);
     EXPECT_LT(before.featureCaptureFraction, 0.95);
+}
+
+// What stands flush on the far side of the wall has sharp edges in it, where the wall goes straight on: they are not asked for. With
+// a step of the tenth part of a cell they are.
+TEST(FitMeasure, sharpEdgesWhereTheWallGoesOnAreNotAskedFor) {
+    const PolyMesh mesh = cubeWall([](Vec3 p) { return p; });
+    const FitReport without = fit(mesh, box(1)), flush = fit(mesh, boxWithBlock(1, 1.5)), step = fit(mesh, boxWithBlock(1 - 0.1 * h, 1.5));
+    EXPECT_EQ(flush.featureSamples, without.featureSamples);
+    EXPECT_DOUBLE_EQ(flush.featureCaptureFraction, 1);
+    EXPECT_EQ(flush.lostEdges.total, 0);
+    EXPECT_GT(step.featureSamples, without.featureSamples + 30);
+    EXPECT_LT(step.featureCaptureFraction, 0.95);
+}
+
+// The edges of a block that the wall lacks are listed, not within h of its corners: as long as their samples stand for.
+TEST(FitMeasure, lostEdgesAreListed) {
+    const FitReport r = fit(cubeWall([](Vec3 p) { return p; }), boxWithBlock(1 - 0.1 * h, 1.5));
+    ASSERT_EQ(r.lostEdges.total, 4);
+    EXPECT_NEAR(r.lostEdges.length, 4 * (0.5 - 2 * h), 4 * h / 4);
+    for (const LostEdge& e : r.lostEdges.first) {
+        EXPECT_NEAR(e.length, 0.5 - 2 * h, h / 4);
+        EXPECT_NEAR(e.at.z, 1 - 0.1 * h, 1e-12);
+        EXPECT_EQ(e.part, "box");
+    }
 }
 
 // A line of many short edges is sampled like one long edge: by length, not by edge.

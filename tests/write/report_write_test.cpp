@@ -33,6 +33,7 @@ RunReport sample() {
     r.changes = {2, 3, {{1, 2, 3}}, 4};
     r.fit.emplace();
     r.fitCutShort = true;
+    r.fit->lostEdges = {0.75, 4, {{0.5, {1, 2, 3}, {{0, 2, 3}, {2, 2, 3}}, "body"}}};
     r.offGeometry.emplace();
     r.offGeometry->counts[static_cast<std::size_t>(OffCause::gap)] = 3;
     r.offGeometry->places = {1, {{3, {1, 2, 3}, {{1, 2, 3}, {1, 2, 3}}, 0.5, {1, 2, 3}, OffCause::gap, "body"}}};
@@ -71,7 +72,9 @@ TEST(ReportWrite, HasTheContractsKeys) {
                                                         "mean_distance_in_h", "max_distance_in_h",
                                                         "feature_capture_fraction", "tilted_face_fraction",
                                                         "tilted_45_face_fraction",
-                                                        "cut_short", "off_geometry"));
+                                                        "cut_short", "lost_edges", "off_geometry"));
+    EXPECT_EQ(json["fit"]["lost_edges"].dump(),
+              R"({"length":0.75,"places_total":4,"places":[{"length":0.5,"part":"body","at":[1.0,2.0,3.0],"box":[[0.0,2.0,3.0],[2.0,2.0,3.0]]}]})");
     const Json& off = json["fit"]["off_geometry"];
     EXPECT_THAT(keys(off), testing::ElementsAre("nodes", "fraction", "causes", "places_total", "places", "tilted_nodes",
                                                 "tilted_places_total", "tilted_places"));

@@ -45,6 +45,18 @@ std::string offGeometryLine(const OffPlaces& places) {
                        fmt::join(worst, "; "), places.total > static_cast<std::int64_t>(worst.size()) ? "; ..." : "");
 }
 
+// The same of sharp edges that are not captured.
+std::string lostEdgesLine(const LostEdges& lost) {
+    constexpr std::size_t most = 3;
+    std::vector<std::string> longest;
+    for (const LostEdge& e : lost.first) {
+        if (longest.size() == most) break;
+        longest.push_back(fmt::format("{:.2g} m at ({:.4g} {:.4g} {:.4g}) on {}", e.length, e.at.x, e.at.y, e.at.z, e.part));
+    }
+    return fmt::format("{} place{} where sharp edges are lost, {:.2g} m in all: {}{}\n", lost.total, lost.total == 1 ? "" : "s", lost.length, fmt::join(longest, "; "),
+                       lost.total > static_cast<std::int64_t>(longest.size()) ? "; ..." : "");
+}
+
 // By the names of the sets that checkMesh -allGeometry writes.
 std::string verdict(const QualityReport& q) {
     std::vector<std::string> failing;
@@ -82,6 +94,7 @@ std::string fitText(const FitReport& fit) {
                        fit.maxDistanceInH, fit.farthest.x, fit.farthest.y, fit.farthest.z,
                        100 * fit.featureCaptureFraction, fit.featureSamples, 100 * fit.tiltedFaceFraction,
                        100 * fit.tilted45FaceFraction) +
+           (fit.lostEdges.total == 0 ? "" : "    " + lostEdgesLine(fit.lostEdges)) +
            (fit.borderSamples == 0 ? "" : fmt::format("    borders between parts captured: {:.2f} % of {} samples\n", 100 * fit.partBorderFraction, fit.borderSamples));
 }
 
@@ -128,6 +141,7 @@ std::string summaryText(const RunReport& report) {
         text += fmt::format(
             "fit: {:.2f} % of the wall nodes on the geometry, {:.1f} % of the sharp edges captured\n",
             100 * f->wallNodesOnGeometryFraction, 100 * f->featureCaptureFraction);
+    if (report.fit && report.fit->lostEdges.total > 0) text += lostEdgesLine(report.fit->lostEdges);
     if (report.offGeometry && report.offGeometry->places.total > 0) text += offGeometryLine(report.offGeometry->places);
     if (report.fitCutShort) text += "the fit was cut short by --fit-seconds: another run may give another mesh\n";
     if (const auto& l = report.layers)

@@ -1,5 +1,5 @@
 // How much of the geometry's sharp edges the wall has captured.
-#include "i2b/quality/line_capture.h"
+#include "i2b/quality/lost_edges.h"
 #include <algorithm>
 #include <array>
 #include <numbers>
@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::array overWall{0.3, 1.0}; // of h: an edge seen from neither height over the wall is hidden,
 constexpr double hiddenBy = 0.05;        // of h: if it lies so far behind what is seen
+constexpr double beside = 0.1;           // of h: what is seen so far to both sides of an edge says whether it folds
 
 // Edges of the wall where two of its faces fold by more than the crease angle.
 Surface creaseSurface(const PolyMesh& mesh, const Wall& wall) {
@@ -29,6 +30,21 @@ Surface creaseSurface(const PolyMesh& mesh, const Wall& wall) {
     return s;
 }
 
+// Does the geometry fold at an edge by more than a crease of the wall, as one sees it from the flow? Not where parts lie flush, or another
+// one stands at its far side: from straight above, a little aside, it is seen to go on.
+bool foldsUnder(const SurfaceIndex& index, const Vec3& flow, const Vec3& p, const Vec3& tangent, double h) {
+    const Vec3 way = flow - p, up = way - tangent * dot(way, tangent), above = p + up, aside = cross(tangent, normalized(up)) * (beside * h);
+    if (index.firstHit(flow, above)) return true;
+    std::array<Vec3, 2> seen;
+    for (const std::size_t side : {0u, 1u}) {
+        const Vec3 ray = (p + aside * (side == 0 ? 1.0 : -1.0) - above) * 2;
+        const SegmentHit hit = index.firstHit(above, above + ray);
+        if (!hit) return true;
+        seen[side] = above + ray * hit.t - p;
+    }
+    return 180 - degreesBetween(seen[0], seen[1]) > creaseAngle;
+}
+
 } // namespace
 
 double degreesBetween(const Vec3& a, const Vec3& b) {
@@ -46,15 +62,22 @@ void measureCapture(const PolyMesh& mesh, const Wall& wall, const SurfaceIndex& 
                     FitReport& report) {
     const Surface creases = creaseSurface(mesh, wall);
     const SurfaceIndex creaseIndex(creases);
-    // An edge that ends inside another part is none that a wall could have.
-    const auto isReached = [&](const Vec3& p, std::uint32_t, const WallPlace& at) {
-        return std::any_of(overWall.begin(), overWall.end(), [&](double height) { return isSeenFrom(index, flowOver(wall, at, height * at.h), p, hiddenBy * at.h); });
+    // An edge that ends inside another part is none that a wall could have, nor is one where the geometry goes straight on.
+    const auto isReached = [&](const Vec3& p, std::uint32_t line, const WallPlace& at) {
+        const auto& t = sharpEdges.triangles[line];
+        const Vec3 tangent = normalized(sharpEdges.points[t[1]] - sharpEdges.points[t[0]]);
+        for (const double height : overWall) {
+            const Vec3 flow = flowOver(wall, at, height * at.h);
+            if (isSeenFrom(index, flow, p, hiddenBy * at.h)) return foldsUnder(index, flow, p, tangent, at.h);
+        }
+        return false;
     };
     const LineSamples n = captureLines(
         mesh, wall, sharpEdges, sharp, isReached,
         [&](const Vec3& p, std::uint32_t, const WallPlace& at) { return bool(creaseIndex.closest(p, 0.1 * at.h)); });
     report.featureSamples = n.samples;
-    if (n.samples > 0) report.featureCaptureFraction = static_cast<double>(n.captured) / static_cast<double>(n.samples);
+    report.featureCaptureFraction = n.captured();
+    report.lostEdges = gatherLostEdges(n.lost, index);
 }
 
 } // namespace i2b

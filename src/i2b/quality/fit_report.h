@@ -13,8 +13,9 @@
 // Captured: samples are taken every h/4 along the geometry's edges of 40 degrees and more, where the wall
 // comes within h/2 and where the edge is resolvable: every such edge stays within 0.1 h of the sample's own
 // straight line as far as h from the sample; and where geometry does not hide it: an edge inside another part, more than
-// 0.05 h behind what is seen from 0.3 h and from h over the nearest wall, is none that a wall could have. The share that has a wall edge, folded by more than 25 degrees,
-// within 0.1 h.
+// 0.05 h behind what is seen from 0.3 h and from h over the nearest wall, is none that a wall could have, and nor is one at which the
+// geometry, seen from there, goes straight on: where parts lie flush, or one ends at the far side of another, what is seen 0.1 h to both
+// sides folds by no more than a wall edge must. The share that has a wall edge, folded by more than 25 degrees, within 0.1 h.
 //
 // Borders: the same along the lines where two parts meet (border_lines.h), of samples that are seen from the flow 0.3 h
 // over the nearest wall, one of the parts at either side 0.1 h from the line and none at both; the share that has an edge
@@ -31,6 +32,20 @@
 
 namespace i2b {
 
+// A stretch of sharp edges that the wall has not captured (lost_edges.h).
+struct LostEdge {
+    double length = 0; // m
+    Vec3 at;           // m, a place on it, in its middle
+    Box box;           // m
+    std::string part;  // of the geometry
+};
+
+struct LostEdges {
+    double length = 0;           // m, of all
+    std::int64_t total = 0;      // stretches
+    std::vector<LostEdge> first; // of them, longest first
+};
+
 struct FitReport {
     std::int64_t wallNodes = 0, wallFaces = 0;
     double wallNodesOnGeometryFraction = 1;                  // within 0.01 h, h the local wall cell size
@@ -38,6 +53,7 @@ struct FitReport {
     double meanDistanceInH = 0, maxDistanceInH = 0;          // of wall face centres; of wall nodes
     double featureCaptureFraction = 1; // of resolvable samples every h/4 along sharp edges
     std::int64_t featureSamples = 0;
+    LostEdges lostEdges;               // where the others are
     double tiltedFaceFraction = 0; // normal over 25 degrees off, more than h from sharp edges
     double tilted45FaceFraction = 0;
     double partBorderFraction = 1;   // of resolvable samples every h/4 along the lines where two parts meet

@@ -178,11 +178,16 @@ LineSamples captureLines(const PolyMesh& mesh, const Wall& wall, const Surface& 
             const WallPlace at = reach.at(s.point, largestH / 2);
             if (at.face < 0 || at.distance > at.h / 2 || !isResolvable(lines, lineIndex, s, at.h) || !counts(s.point, s.line, at)) continue;
             ++n.samples;
-            n.captured += isCaptured(s.point, s.line, at);
+            if (!isCaptured(s.point, s.line, at)) n.lost.push_back({s.point, at.h});
         }
         return n;
     };
-    return orderedReduce(samples.size(), LineSamples{}, body, [](const LineSamples& a, const LineSamples& b) { return LineSamples{a.samples + b.samples, a.captured + b.captured}; }, 128);
+    const auto join = [](LineSamples a, const LineSamples& b) {
+        a.samples += b.samples;
+        a.lost.insert(a.lost.end(), b.lost.begin(), b.lost.end());
+        return a;
+    };
+    return orderedReduce(samples.size(), LineSamples{}, body, join, 128);
 }
 
 } // namespace i2b

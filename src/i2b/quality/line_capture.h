@@ -14,8 +14,15 @@ struct WallPlace {
     Vec3 point;             // m
 };
 
+struct LostSample {
+    Vec3 point;   // m
+    double h = 0; // m, of the wall there
+};
+
 struct LineSamples {
-    std::int64_t samples = 0, captured = 0;
+    std::int64_t samples = 0;
+    std::vector<LostSample> lost; // of these, those not captured, in the order of the lines
+    double captured() const { return samples > 0 ? 1 - static_cast<double>(lost.size()) / static_cast<double>(samples) : 1; } // share
 };
 
 // Asked of a sample, m, and the triangle without area of its line; on any thread.

@@ -162,7 +162,7 @@ void measurePartBorders(const PolyMesh& mesh, const Rows& cellFaces, const Surfa
     };
     const LineSamples n = captureLines(mesh, wall, borders.lines, lineIndex, isSeen, isCaptured);
     report.borderSamples = n.samples;
-    if (n.samples > 0) report.partBorderFraction = static_cast<double>(n.captured) / static_cast<double>(n.samples);
+    report.partBorderFraction = n.captured();
 }
 
 } // namespace i2b

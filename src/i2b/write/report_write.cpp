@@ -97,6 +97,13 @@ Json offGeometryJson(const OffGeometry& off) {
             {"tilted_places", offPlacesJson(off.tiltedPlaces)}};
 }
 
+Json lostEdgesJson(const LostEdges& lost) {
+    Json places = Json::array();
+    for (const LostEdge& e : lost.first)
+        places.push_back({{"length", number(e.length)}, {"part", e.part}, {"at", place(e.at)}, {"box", Json::array({place(e.box.lo), place(e.box.hi)})}});
+    return {{"length", number(lost.length)}, {"places_total", lost.total}, {"places", places}};
+}
+
 Json layersJson(const LayerReport& l) {
     Json parts = Json::array();
     for (const LayerRow& row : l.parts) parts.push_back(layerRowJson(row));
@@ -165,6 +172,7 @@ std::string reportText(const RunReport& r) {
     if (r.quality) json["quality"]["changes"] = changesJson(r.changes);
     json["fit"] = r.fit ? fitJson(*r.fit) : Json(nullptr);
     if (r.fit) json["fit"]["cut_short"] = r.fitCutShort;
+    if (r.fit) json["fit"]["lost_edges"] = lostEdgesJson(r.fit->lostEdges);
     if (r.fit) json["fit"]["off_geometry"] = r.offGeometry ? offGeometryJson(*r.offGeometry) : Json(nullptr);
     json["layers"] = r.layers ? layersJson(*r.layers) : Json(nullptr);
     json["patches"] = patches;

@@ -1,0 +1,64 @@
+#include "i2b/quality/lost_edges.h"
+#include "i2b/core/parallel.h"
+#include "i2b/paint/union_find.h"
+#include <algorithm>
+
+namespace i2b {
+namespace {
+
+using Index = std::size_t;
+constexpr double together = 0.5; // of h: samples so near to each other lie in one place
+constexpr double spacing = 0.25; // of h: what one sample stands for
+
+// Each sample as a triangle without area, which a SurfaceIndex takes like any other.
+Surface pointSurface(const std::vector<LostSample>& samples) {
+    Surface s;
+    s.parts = {Part{"samples", "", samples.size()}};
+    s.partOf.assign(samples.size(), 0);
+    for (const LostSample& sample : samples) {
+        const auto n = static_cast<std::uint32_t>(s.points.size());
+        s.points.push_back(sample.point);
+        s.triangles.push_back({n, n, n});
+    }
+    return s;
+}
+
+} // namespace
+
+LostEdges gatherLostEdges(const std::vector<LostSample>& samples, const SurfaceIndex& index, std::size_t most) {
+    LostEdges lost;
+    if (samples.empty()) return lost;
+    const Surface points = pointSurface(samples);
+    const SurfaceIndex near(points);
+    UnionFind sets(samples.size());
+    parallelFor(samples.size(), [&](Index i) {
+        const Vec3 &p = samples[i].point, reach = Vec3{1, 1, 1} * (together * samples[i].h);
+        near.any({p - reach, p + reach}, [&](std::uint32_t other) {
+            if (other != i && norm(points.points[other] - p) <= together * samples[i].h) sets.join(static_cast<std::uint32_t>(i), other);
+            return false;
+        });
+    }, 64);
+    struct Place { std::vector<std::uint32_t> samples; double length = 0; };
+    std::vector<Place> places;
+    std::vector<std::int32_t> number(samples.size(), -1); // of the place, at its lowest sample
+    for (Index i = 0; i < samples.size(); ++i) {
+        std::int32_t& place = number[sets.find(static_cast<std::uint32_t>(i))];
+        if (place < 0) place = static_cast<std::int32_t>(places.size()), places.emplace_back();
+        places[Index(place)].samples.push_back(static_cast<std::uint32_t>(i));
+        places[Index(place)].length += spacing * samples[i].h;
+        lost.length += spacing * samples[i].h;
+    }
+    std::ranges::stable_sort(places, std::greater{}, &Place::length);
+    lost.total = static_cast<std::int64_t>(places.size());
+    for (Index i = 0; i < std::min(most, places.size()); ++i) {
+        LostEdge edge;
+        edge.length = places[i].length;
+        edge.at = samples[places[i].samples[places[i].samples.size() / 2]].point;
+        for (const std::uint32_t s : places[i].samples) edge.box.add(samples[s].point);
+        if (const ClosestPoint c = index.closest(edge.at)) edge.part = index.surface().parts[index.surface().partOf[c.triangle]].name;
+        lost.first.push_back(std::move(edge));
+    }
+    return lost;
+}
+
+} // namespace i2b
