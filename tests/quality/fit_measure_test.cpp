@@ -1,4 +1,5 @@
 // measureFit on walls whose every figure can be worked out by hand: a unit cube with n x n faces a side.
+#include "i2b/geometry/rims.h"
 #include "i2b/quality/fit_report.h"
 #include <functional>
 #include <gtest/gtest.h>
@@ -307,6 +308,35 @@ TEST(FitMeasure, lostEdgesAreListed) {
         EXPECT_NEAR(e.at.z, 1 - 0.1 * h, 1e-12);
         EXPECT_EQ(e.part, "box");
     }
+}
+
+// Sheets end in rims, where the wall folds by 180 degrees: they are asked for like other sharp edges, and where the wall ends 0.3 h
+// before one it is lost. In a crack, which something follows, there is none; nor where the graph has none marked.
+TEST(FitMeasure, rimsOfSheetsAreSharpEdges) {
+    Surface sheet;
+    sheet.parts = {{"sheet", "", 2}};
+    sheet.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+    sheet.partOf = {0, 0};
+    const auto measured = [](const Surface& s, double end, bool marked) {
+        const PolyMesh mesh = cubeWall([&](Vec3 p) { return Vec3{p.x * end, p.y, (p.z - 0.5) * 0.01 * h}; });
+        const SurfaceIndex index(s);
+        FeatureGraph features = buildFeatureGraph(s, {});
+        if (marked) markRims(features, index, {});
+        return measureFit(mesh, buildCellFaces(mesh), index, features, {"body", "top"});
+    };
+    const FitReport whole = measured(sheet, 1, true), cut = measured(sheet, 1 - 0.3 * h, true);
+    EXPECT_NEAR(double(whole.featureSamples), 4 * (4 * n - 8), 8);
+    EXPECT_DOUBLE_EQ(whole.featureCaptureFraction, 1);
+    EXPECT_EQ(cut.lostEdges.total, 1);
+    EXPECT_NEAR(cut.lostEdges.length, 1 - 2 * h, h / 2);
+    EXPECT_NEAR(cut.lostEdges.first.at(0).at.x, 1, 1e-12);
+    EXPECT_EQ(measured(sheet, 1, false).featureSamples, 0);
+    Surface cracked = sheet; // and goes on 0.1 h behind the end
+    cracked.points.insert(cracked.points.end(), {{1 + 0.1 * h, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1 + 0.1 * h, 1, 0}});
+    cracked.triangles.insert(cracked.triangles.end(), {{4, 5, 6}, {4, 6, 7}});
+    cracked.partOf.insert(cracked.partOf.end(), {0, 0});
+    EXPECT_NEAR(double(measured(cracked, 1, true).featureSamples), 4 * (3 * n - 4) - 4, 8);
 }
 
 // A line of many short edges is sampled like one long edge: by length, not by edge.

@@ -114,19 +114,27 @@ void addRimCorners(FeatureGraph& graph, double limit) {
 
 } // namespace
 
-void markRims(FeatureGraph& graph, const SurfaceIndex& index, const FeatureOptions& options, double gap) {
+std::vector<std::uint8_t> findRims(const FeatureGraph& graph, const SurfaceIndex& index, const FeatureOptions& options, double gap) {
+    std::vector<std::uint8_t> rims(graph.edges.size(), 0);
     gap = std::max(gap, 10 * graph.weldTolerance);
-    if (!(gap > 0)) return;
+    if (!(gap > 0)) return rims;
     const Look look(index, gap, 4 * graph.weldTolerance); // welding moves a point by up to twice the tolerance
     parallelFor(
-        graph.edges.size(),
+        rims.size(),
         [&](std::size_t i) {
-            FeatureEdge& edge = graph.edges[i];
+            const FeatureEdge& edge = graph.edges[i];
             if (!(edge.kinds & bitOf(EdgeKind::free))) return;
             const Vec3 middle = (graph.points[edge.a] + graph.points[edge.b]) * 0.5;
-            if (angleAt(options, middle) < 180 && isRim(graph, edge, look, gap)) edge.kinds |= bitOf(EdgeKind::rim);
+            rims[i] = angleAt(options, middle) < 180 && isRim(graph, edge, look, gap);
         },
         16);
+    return rims;
+}
+
+void markRims(FeatureGraph& graph, const SurfaceIndex& index, const FeatureOptions& options, double gap) {
+    const std::vector<std::uint8_t> rims = findRims(graph, index, options, gap);
+    for (std::size_t i = 0; i < rims.size(); ++i)
+        if (rims[i]) graph.edges[i].kinds |= bitOf(EdgeKind::rim);
     for (const FeatureEdge& e : graph.edges)
         if (e.kinds & bitOf(EdgeKind::rim))
             ++graph.rimEdges, graph.rimEdgeLength += norm(graph.points[e.b] - graph.points[e.a]);

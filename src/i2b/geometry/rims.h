@@ -21,4 +21,7 @@ namespace i2b {
 // degrees) and boxes hold for rims as for other edges. The same on any number of threads.
 void markRims(FeatureGraph& graph, const SurfaceIndex& index, const FeatureOptions& options, double gap = 0);
 
+// Per edge of the graph: is it such a free edge?
+std::vector<std::uint8_t> findRims(const FeatureGraph& graph, const SurfaceIndex& index, const FeatureOptions& options, double gap = 0);
+
 } // namespace i2b

@@ -1,6 +1,7 @@
 // i2b check: quality of any polyMesh, and how well its walls fit a geometry.
 #include "i2b/geometry/features.h"
 #include "i2b/geometry/read.h"
+#include "i2b/geometry/rims.h"
 #include "i2b/geometry/surface_index.h"
 #include "i2b/program/print.h"
 #include "i2b/program/runs.h"
@@ -25,7 +26,9 @@ FitReport fitTo(const PolyMesh& mesh, const Rows& cellFaces, const GeometryOptio
     }
     Stage stage(run.context, "fit");
     const SurfaceIndex index(surface);
-    const FeatureGraph features = buildFeatureGraph(surface, {geometry.featureAngle, 0});
+    const FeatureOptions options{geometry.featureAngle, 0};
+    FeatureGraph features = buildFeatureGraph(surface, options);
+    markRims(features, index, options);
     FitReport fit = measureFit(mesh, cellFaces, index, features, patches);
     measurePartBorders(mesh, cellFaces, index, patches, fit);
     stage.items = static_cast<std::uint64_t>(fit.wallFaces);

@@ -1,4 +1,6 @@
 // How much of the geometry's sharp edges the wall has captured.
+#include "i2b/core/quantile.h"
+#include "i2b/geometry/rims.h"
 #include "i2b/quality/lost_edges.h"
 #include <algorithm>
 #include <array>
@@ -9,6 +11,7 @@ namespace {
 
 constexpr std::array overWall{0.3, 1.0}; // of h: an edge seen from neither height over the wall is hidden,
 constexpr double hiddenBy = 0.05;        // of h: if it lies so far behind what is seen
+constexpr double rimGap = 2;             // of h: a sheet beyond whose free edge something follows so near does not end there
 constexpr double beside = 0.1;           // of h: what is seen so far to both sides of an edge says whether it folds
 
 // Edges of the wall where two of its faces fold by more than the crease angle.
@@ -51,10 +54,17 @@ double degreesBetween(const Vec3& a, const Vec3& b) {
     return std::atan2(norm(cross(a, b)), dot(a, b)) * (180 / std::numbers::pi);
 }
 
-Surface sharpSurface(const FeatureGraph& features) {
+Surface sharpSurface(const FeatureGraph& features, const Wall& wall, const SurfaceIndex& index) {
+    std::vector<std::uint8_t> rims(features.edges.size(), 0);
+    if (features.rimEdges > 0) {
+        std::vector<double> sizes = wall.faceH;
+        rims = findRims(features, index, {}, rimGap * median(sizes));
+    }
     Surface s;
-    for (const FeatureEdge& e : features.edges)
-        if (e.angle >= sharpAngle) addSegment(s, features.points[e.a], features.points[e.b]);
+    for (std::size_t i = 0; i < rims.size(); ++i) {
+        const FeatureEdge& e = features.edges[i];
+        if (e.angle >= sharpAngle || rims[i]) addSegment(s, features.points[e.a], features.points[e.b]);
+    }
     return s;
 }
 

@@ -10,7 +10,10 @@
 //
 // On the geometry: within 0.01 h of it.
 //
-// Captured: samples are taken every h/4 along the geometry's edges of 40 degrees and more, where the wall
+// Sharp edges are the geometry's edges of 40 degrees and more and the rims of its sheets, which fold by 180: free edges beyond which nothing
+// follows within 2 h (rims.h).
+//
+// Captured: samples are taken every h/4 along the geometry's sharp edges, where the wall
 // comes within h/2 and where the edge is resolvable: every such edge stays within 0.1 h of the sample's own
 // straight line as far as h from the sample; and where geometry does not hide it: an edge inside another part, more than
 // 0.05 h behind what is seen from 0.3 h and from h over the nearest wall, is none that a wall could have, and nor is one at which the
@@ -21,7 +24,7 @@
 // over the nearest wall, one of the parts at either side 0.1 h from the line and none at both; the share that has an edge
 // between the patches of these two parts, or of others that lie upon them there, within 0.1 h.
 //
-// Tilted: of the wall faces whose centre is more than h from every edge of 40 degrees and more, the share
+// Tilted: of the wall faces whose centre is more than h from every sharp edge, the share
 // whose normal is over 25 (45) degrees off that of the geometry closest to the centre, orientation ignored.
 #pragma once
 #include "i2b/assemble/mesh_topology.h"
@@ -71,8 +74,8 @@ struct WallNodes {
 };
 
 // Of the mesh's wall patches: those named, or all patches of type wall. features must have been built with an
-// angle of at most 40 degrees for the last figures to mean what is said above; all is the same on any number
-// of threads. nodes: filled where given and there is something to measure. cellFaces: buildCellFaces().
+// angle of at most 40 degrees for the last figures to mean what is said above, and rims count where it has any marked: they
+// are told from cracks anew, by the wall's own size. All is the same on any number of threads. nodes: filled where given and there is something to measure. cellFaces: buildCellFaces().
 FitReport measureFit(const PolyMesh& mesh, const Rows& cellFaces, const SurfaceIndex& index, const FeatureGraph& features,
                      const std::vector<std::string>& patches = {}, WallNodes* nodes = nullptr);
 

@@ -32,8 +32,8 @@ std::size_t nodePlace(const Wall& wall, std::int32_t point);
 
 double degreesBetween(const Vec3& a, const Vec3& b);
 
-// The sharp edges of the geometry as triangles without area.
-Surface sharpSurface(const FeatureGraph& features);
+// The sharp edges of the geometry, and the rims of its sheets, as triangles without area.
+Surface sharpSurface(const FeatureGraph& features, const Wall& wall, const SurfaceIndex& index);
 
 // Fills the report's share of captured samples (fit_report.h). index: of the geometry; sharp: of sharpEdges, which is not empty.
 void measureCapture(const PolyMesh& mesh, const Wall& wall, const SurfaceIndex& index, const Surface& sharpEdges, const SurfaceIndex& sharp, FitReport& report);
