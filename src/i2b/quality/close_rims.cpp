@@ -219,7 +219,7 @@ void RimCloser::seekRest(ClosedRims& out) {
 
 ClosedRims RimCloser::run(std::int32_t firstLayerCell) {
     ClosedRims out;
-    anyJoined_ = zipRims(star_, mesh_, cellFaces_, wall_, front_, rims_, limits_, firstLayerCell) > 0;
+    anyJoined_ = zipRims(star_, mesh_, cellFaces_, wall_, front_, index_, rims_, limits_, firstLayerCell) > 0;
     seekRest(out);
     if (anyJoined_) write(out);
     return out;

@@ -3,6 +3,7 @@
 #include "i2b/core/sort_unique.h"
 #include "i2b/fit/features.h"
 #include "i2b/front/front.h"
+#include "i2b/geometry/surface_index.h"
 #include "i2b/quality/fit_wall.h"
 #include <algorithm>
 #include <map>
@@ -11,7 +12,8 @@ namespace i2b {
 namespace {
 
 using Index = std::size_t;
-constexpr double reach = 0.45;      // of h: nodes nearer to a rim may go there
+constexpr double reach = 0.45;      // of h: nodes nearer to a rim may go there,
+constexpr double reachBeyond = 0.9; // and so may these, of columns that end nowhere else
 constexpr double farFront = 2;      // of h: front nodes nearer to it say where,
 constexpr double farAlong = 0.7;    // unless that is so far from where the node is now
 constexpr double nearCorner = 0.45; // of h: a corner of the rim draws the nearest of these
@@ -20,7 +22,7 @@ constexpr double same = 1e-6;       // of h
 
 class RowFinder {
   public:
-    RowFinder(const PolyMesh& mesh, const Wall& wall, const Front& front, const FeatureIndex& rims) : mesh_(mesh), wall_(wall), front_(front), rims_(rims) {}
+    RowFinder(const PolyMesh& mesh, const Wall& wall, const Front& front, const SurfaceIndex& index, const FeatureIndex& rims) : mesh_(mesh), wall_(wall), front_(front), index_(index), rims_(rims) {}
     RimRows run() {
         findNodes();
         findFaces();
@@ -35,6 +37,8 @@ class RowFinder {
   private:
     RimRows::Node& node(std::int32_t point) { return rows_.nodes[nodePlace(wall_, point)]; }
     double apart(std::int32_t a, std::int32_t b) { return norm(node(a).to - node(b).to) / std::min(node(a).h, node(b).h); }
+    // Is nothing of the sheet nearer to a place than its rim?
+    bool isBeyond(const Vec3& p) const { return rims_.closestLine(p, (1 + same) * index_.closest(p).distance).found; }
     bool isAtCorner(const RimRows::Node& n) const { return bool(rims_.closestCorner(n.to, same * n.h)); }
     void findNodes();
     void findFaces();
@@ -52,6 +56,7 @@ class RowFinder {
     const PolyMesh& mesh_;
     const Wall& wall_;
     const Front& front_;
+    const SurfaceIndex& index_;
     const FeatureIndex& rims_;
     RimRows rows_;
     std::vector<RimRows::Edge> ends_; // of strips, across them
@@ -70,8 +75,9 @@ void RowFinder::findNodes() {
         nodes[n].h /= std::max(edges[n], 1);
         if (front_.outside[n] != 0) return; // nodes in sides of the domain stay there
         const double h = nodes[n].h;
-        const FeatureIndex::Line line = rims_.closestLine(mesh_.points[Index(wall_.nodes[n])], reach * h);
-        if (!line.found) return;
+        const Vec3& place = mesh_.points[Index(wall_.nodes[n])];
+        const FeatureIndex::Line line = rims_.closestLine(place, reachBeyond * h);
+        if (!line.found || (norm(line.point - place) > reach * h && !isBeyond(front_.front[n]))) return;
         nodes[n].moves = true;
         const FeatureIndex::Line under = rims_.closestLine(front_.front[n], farFront * h); // columns across the rim make the best wedges
         nodes[n].to = under.found && norm(under.point - line.point) < farAlong * h ? under.point : line.point;
@@ -164,7 +170,7 @@ void RowFinder::meetCorners() {
 
 } // namespace
 
-RimRows findRimRows(const PolyMesh& mesh, const Wall& wall, const Front& front, const FeatureIndex& rims) { return RowFinder(mesh, wall, front, rims).run(); }
+RimRows findRimRows(const PolyMesh& mesh, const Wall& wall, const Front& front, const SurfaceIndex& index, const FeatureIndex& rims) { return RowFinder(mesh, wall, front, index, rims).run(); }
 
 Vec3 betweenOnRim(const RimRows::Node& a, const RimRows::Node& b, const FeatureIndex& rims) {
     for (const RimRows::Node* n : {&a, &b})

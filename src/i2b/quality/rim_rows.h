@@ -10,6 +10,7 @@
 namespace i2b {
 
 class FeatureIndex;
+class SurfaceIndex;
 struct Front;
 struct PolyMesh;
 struct Wall;
@@ -30,8 +31,8 @@ struct RimRows {
     std::unordered_map<std::int32_t, std::vector<std::int32_t>> facesOf; // per point that moves, places in wall.faces, ascending
 };
 
-// wall: its nodes follow each other as the vertices of front do. rims: of the geometry, alone.
-RimRows findRimRows(const PolyMesh& mesh, const Wall& wall, const Front& front, const FeatureIndex& rims);
+// wall: its nodes follow each other as the vertices of front do. index: of the geometry; rims: of it, alone.
+RimRows findRimRows(const PolyMesh& mesh, const Wall& wall, const Front& front, const SurfaceIndex& index, const FeatureIndex& rims);
 
 // Where two nodes that become one go: on a corner of the rim that one of them has, else between them. m
 Vec3 betweenOnRim(const RimRows::Node& a, const RimRows::Node& b, const FeatureIndex& rims);

@@ -323,9 +323,9 @@ std::vector<RimZip> ZipFinder::run() {
 
 } // namespace
 
-std::vector<RimZip> findRimZips(const PolyMesh& mesh, const Rows& cellFaces, const RimStar& star, const Wall& wall, const Front& front, const FeatureIndex& rims,
+std::vector<RimZip> findRimZips(const PolyMesh& mesh, const Rows& cellFaces, const RimStar& star, const Wall& wall, const Front& front, const SurfaceIndex& index, const FeatureIndex& rims,
                                 std::int32_t firstLayerCell) {
-    const RimRows rows = findRimRows(mesh, wall, front, rims);
+    const RimRows rows = findRimRows(mesh, wall, front, index, rims);
     return ZipFinder(mesh, cellFaces, star, wall, rows, rims, firstLayerCell).run();
 }
 

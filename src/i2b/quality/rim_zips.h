@@ -9,11 +9,12 @@
 namespace i2b {
 
 class FeatureIndex;
+class SurfaceIndex;
 struct Front;
 struct Wall;
 
-// rims: the rims of the geometry alone; firstLayerCell: cells from there on are layers. Zips in the order of their first faces.
-std::vector<RimZip> findRimZips(const PolyMesh& mesh, const Rows& cellFaces, const RimStar& star, const Wall& wall, const Front& front, const FeatureIndex& rims,
+// index: of the geometry; rims: its rims alone; firstLayerCell: cells from there on are layers. Zips in the order of their first faces.
+std::vector<RimZip> findRimZips(const PolyMesh& mesh, const Rows& cellFaces, const RimStar& star, const Wall& wall, const Front& front, const SurfaceIndex& index, const FeatureIndex& rims,
                                 std::int32_t firstLayerCell);
 
 } // namespace i2b

@@ -2,13 +2,15 @@
 #include "i2b/core/parallel.h"
 #include "i2b/quality/rim_shape.h"
 #include <algorithm>
+#include <limits>
 #include <map>
+#include <unordered_map>
 
 namespace i2b {
 namespace {
 
 using Index = std::size_t;
-constexpr int shapings = 8; // rounds in which columns are moved
+constexpr int shapings = 20; // rounds in which columns are moved
 
 class Zipper {
   public:
@@ -19,6 +21,8 @@ class Zipper {
   private:
     void judgeChanged();
     void shapeWorse();
+    double excessOf(Index i) const;
+    std::vector<std::uint8_t> worstOfWorse() const;
     bool openWorse();
     void markChanged(const RimZip& zip) {
         for (const std::int32_t c : star_.withNeighbours(zip.star)) isChanged_[Index(c)] = true;
@@ -70,23 +74,51 @@ void Zipper::shapeWorse() {
     }
 }
 
+// How much worse a zip leaves its cells.
+double Zipper::excessOf(Index i) const {
+    if (!star_.isSound(zips_[i])) return std::numeric_limits<double>::infinity();
+    const Verdict now = star_.now(zips_[i], limits_);
+    double excess = 0;
+    for (Index k = 0; k < now.counts.size(); ++k) excess += static_cast<double>(std::max<std::int64_t>(0, now.counts[k] - before_[i].counts[k]));
+    return excess;
+}
+
+// Of worse zips that share cells those that are worst by most: what is worse about others may be theirs.
+std::vector<std::uint8_t> Zipper::worstOfWorse() const {
+    std::vector<double> excess(zips_.size(), -1);
+    parallelFor(zips_.size(), [&](Index i) {
+        if (isWorse_[i]) excess[i] = excessOf(i);
+    }, 1);
+    std::unordered_map<std::int32_t, Index> worst; // per cell
+    for (Index i = 0; i < zips_.size(); ++i) {
+        if (!isWorse_[i]) continue;
+        for (const std::int32_t c : zips_[i].star)
+            if (const auto [at, isNew] = worst.try_emplace(c, i); !isNew && excess[i] > excess[at->second]) at->second = i;
+    }
+    std::vector<std::uint8_t> found(zips_.size(), 0);
+    for (Index i = 0; i < zips_.size(); ++i)
+        found[i] = isWorse_[i] && std::ranges::all_of(zips_[i].star, [&](std::int32_t c) { return worst.at(c) == i; });
+    return found;
+}
+
 bool Zipper::openWorse() {
     Index kept = 0;
     std::map<std::int32_t, Vec3> places;
+    const std::vector<std::uint8_t> opens = worstOfWorse();
     for (Index i = 0; i < zips_.size(); ++i) {
-        if (isWorse_[i]) {
+        if (opens[i]) {
             markChanged(zips_[i]);
             continue;
         }
-        if (kept < i) zips_[kept] = std::move(zips_[i]), before_[kept] = before_[i];
+        if (isWorse_[i]) markChanged(zips_[i]); // to be judged again
+        if (kept < i) zips_[kept] = std::move(zips_[i]), before_[kept] = before_[i], isWorse_[kept] = isWorse_[i];
         for (const RimZip::Column& column : zips_[kept].columns)
             for (const std::int32_t p : column.points)
                 if (const auto at = places_.find(p); at != places_.end()) places.insert(*at);
         ++kept;
     }
     if (kept == zips_.size()) return false;
-    zips_.resize(kept), before_.resize(kept);
-    isWorse_.assign(kept, 0);
+    zips_.resize(kept), before_.resize(kept), isWorse_.resize(kept);
     places_ = std::move(places); // of none that only those opened had
     star_.use(zips_, places_);
     return true;
@@ -106,9 +138,9 @@ std::int64_t Zipper::run() {
 
 } // namespace
 
-std::int64_t zipRims(RimStar& star, const PolyMesh& mesh, const Rows& cellFaces, const Wall& wall, const Front& front, const FeatureIndex& rims,
+std::int64_t zipRims(RimStar& star, const PolyMesh& mesh, const Rows& cellFaces, const Wall& wall, const Front& front, const SurfaceIndex& index, const FeatureIndex& rims,
                      const DictionaryLimits& limits, std::int32_t firstLayerCell) {
-    return Zipper(star, findRimZips(mesh, cellFaces, star, wall, front, rims, firstLayerCell), mesh.cells, limits).run();
+    return Zipper(star, findRimZips(mesh, cellFaces, star, wall, front, index, rims, firstLayerCell), mesh.cells, limits).run();
 }
 
 } // namespace i2b
