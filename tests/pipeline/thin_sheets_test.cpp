@@ -115,13 +115,13 @@ Surface openTube(double radius, double length, int strips) {
     return tube;
 }
 
-MeshResult meshTube(const Surface& tube, double size, int layers = 3) {
+MeshResult meshTube(const Surface& tube, double size) {
     const TemporaryStl file(tube);
     Options options;
     options.geometry.files = {file.path()};
     options.size.surface = size;
     options.domain.flow = Flow::external;
-    options.layers.count = layers;
+    options.layers.count = 3;
     Context context;
     return generate(options, context);
 }

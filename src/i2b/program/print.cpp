@@ -32,29 +32,27 @@ std::string regionLine(const Region& region, const std::vector<ReportPart>& part
                        region.seed.x, region.seed.y, region.seed.z, partNames(region, parts));
 }
 
-// One line: how many places are off the geometry, and the first three, which are the worst.
-std::string offGeometryLine(const OffPlaces& places) {
+// One line: how many places there are where something is so, and the first three, which are the worst; tell(place) says it of one.
+template <class Places, class Tell>
+std::string placesLine(const Places& places, const std::string& what, const Tell& tell) {
     constexpr std::size_t most = 3;
     std::vector<std::string> worst;
-    for (const OffPlace& p : places.first) {
-        if (worst.size() == most) break;
-        worst.push_back(fmt::format("{} node{} at ({:.4g} {:.4g} {:.4g}) on {}, up to {:.2g} h, {}", p.nodes, p.nodes == 1 ? "" : "s", p.farthest.x,
-                                    p.farthest.y, p.farthest.z, p.part, p.farthestInH, nameOf(p.cause)));
-    }
-    return fmt::format("{} place{} where the wall is over 0.01 h off: {}{}\n", places.total, places.total == 1 ? "" : "s",
-                       fmt::join(worst, "; "), places.total > static_cast<std::int64_t>(worst.size()) ? "; ..." : "");
+    for (std::size_t i = 0; i < std::min(most, places.first.size()); ++i) worst.push_back(tell(places.first[i]));
+    return fmt::format("{} place{} where {}: {}{}\n", places.total, places.total == 1 ? "" : "s", what, fmt::join(worst, "; "),
+                       places.total > static_cast<std::int64_t>(worst.size()) ? "; ..." : "");
 }
 
-// The same of sharp edges that are not captured.
+std::string offGeometryLine(const OffPlaces& places) {
+    return placesLine(places, "the wall is over 0.01 h off", [](const OffPlace& p) {
+        return fmt::format("{} node{} at ({:.4g} {:.4g} {:.4g}) on {}, up to {:.2g} h, {}", p.nodes, p.nodes == 1 ? "" : "s", p.farthest.x,
+                           p.farthest.y, p.farthest.z, p.part, p.farthestInH, nameOf(p.cause));
+    });
+}
+
 std::string lostEdgesLine(const LostEdges& lost) {
-    constexpr std::size_t most = 3;
-    std::vector<std::string> longest;
-    for (const LostEdge& e : lost.first) {
-        if (longest.size() == most) break;
-        longest.push_back(fmt::format("{:.2g} m at ({:.4g} {:.4g} {:.4g}) on {}", e.length, e.at.x, e.at.y, e.at.z, e.part));
-    }
-    return fmt::format("{} place{} where sharp edges are lost, {:.2g} m in all: {}{}\n", lost.total, lost.total == 1 ? "" : "s", lost.length, fmt::join(longest, "; "),
-                       lost.total > static_cast<std::int64_t>(longest.size()) ? "; ..." : "");
+    return placesLine(lost, fmt::format("sharp edges are lost, {:.2g} m in all", lost.length), [](const LostEdge& e) {
+        return fmt::format("{:.2g} m at ({:.4g} {:.4g} {:.4g}) on {}", e.length, e.at.x, e.at.y, e.at.z, e.part);
+    });
 }
 
 // By the names of the sets that checkMesh -allGeometry writes.

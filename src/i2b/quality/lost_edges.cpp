@@ -10,31 +10,19 @@ using Index = std::size_t;
 constexpr double together = 0.5; // of h: samples so near to each other lie in one place
 constexpr double spacing = 0.25; // of h: what one sample stands for
 
-// Each sample as a triangle without area, which a SurfaceIndex takes like any other.
-Surface pointSurface(const std::vector<LostSample>& samples) {
-    Surface s;
-    s.parts = {Part{"samples", "", samples.size()}};
-    s.partOf.assign(samples.size(), 0);
-    for (const LostSample& sample : samples) {
-        const auto n = static_cast<std::uint32_t>(s.points.size());
-        s.points.push_back(sample.point);
-        s.triangles.push_back({n, n, n});
-    }
-    return s;
-}
-
 } // namespace
 
 LostEdges gatherLostEdges(const std::vector<LostSample>& samples, const SurfaceIndex& index, std::size_t most) {
     LostEdges lost;
     if (samples.empty()) return lost;
-    const Surface points = pointSurface(samples);
+    Surface points;
+    for (const LostSample& sample : samples) addSegment(points, sample.point, sample.point);
     const SurfaceIndex near(points);
     UnionFind sets(samples.size());
     parallelFor(samples.size(), [&](Index i) {
         const Vec3 &p = samples[i].point, reach = Vec3{1, 1, 1} * (together * samples[i].h);
         near.any({p - reach, p + reach}, [&](std::uint32_t other) {
-            if (other != i && norm(points.points[other] - p) <= together * samples[i].h) sets.join(static_cast<std::uint32_t>(i), other);
+            if (other != i && norm(samples[other].point - p) <= together * samples[i].h) sets.join(static_cast<std::uint32_t>(i), other);
             return false;
         });
     }, 64);
