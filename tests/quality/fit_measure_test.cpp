@@ -310,6 +310,26 @@ TEST(FitMeasure, lostEdgesAreListed) {
     }
 }
 
+// Of a block's edges that the wall lacks: those 0.3 h before the wall are left out of it, and those 0.05 h before it, up to which it does
+// not fold, shallow where they run along its own edges and else crossed. Those of a box that the wall ends 0.3 h before are bridged.
+TEST(FitMeasure, lostEdgesHaveACause) {
+    const PolyMesh mesh = cubeWall([](Vec3 p) { return p; });
+    const auto causes = [&](const Surface& s) {
+        std::array<bool, lostCauses> any{};
+        const FitReport r = fit(mesh, s);
+        for (const LostEdge& e : r.lostEdges.first) any[static_cast<std::size_t>(e.cause)] = true;
+        return any;
+    };
+    using Causes = std::array<bool, lostCauses>;
+    EXPECT_EQ(causes(boxWithBlock(1 - 0.3 * h, 1.5)), (Causes{false, false, false, true}));
+    EXPECT_EQ(causes(boxWithBlock(1 - 0.05 * h, 1.5)), (Causes{false, true, false, false})); // at 0.23 and 0.73, between edges at 0.2, 0.3 ...
+    Surface onLines = boxWithBlock(1 - 0.05 * h, 1.5);
+    for (std::size_t i = 8; i < onLines.points.size(); ++i)
+        for (double* c : {&onLines.points[i].x, &onLines.points[i].y}) *c = std::round(*c * n) / n;
+    EXPECT_EQ(causes(onLines), (Causes{true, false, false, false}));
+    EXPECT_EQ(causes(box(1 + 0.3 * h)), (Causes{false, false, true, false}));
+}
+
 // Sheets end in rims, where the wall folds by 180 degrees: they are asked for like other sharp edges, and where the wall ends 0.3 h
 // before one it is lost. In a crack, which something follows, there is none; nor where the graph has none marked.
 TEST(FitMeasure, rimsOfSheetsAreSharpEdges) {

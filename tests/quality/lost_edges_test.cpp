@@ -18,8 +18,12 @@ Surface twoParts() {
     return s;
 }
 
+LostSample sampleOf(const Vec3& point, double size) { return {point, 0, {-1, size, 0, {}}}; }
+
+std::vector<LostCause> allCrossed(const std::vector<LostSample>& samples) { return std::vector(samples.size(), LostCause::crossed); }
+
 void addStretch(std::vector<LostSample>& samples, const Vec3& from, int count) {
-    for (int i = 0; i < count; ++i) samples.push_back({from + Vec3{i * h / 4, 0, 0}, h});
+    for (int i = 0; i < count; ++i) samples.push_back(sampleOf(from + Vec3{i * h / 4, 0, 0}, h));
 }
 
 // Samples h/4 apart are one place, as long as its samples stand for; what lies over h/2 away is another. The longest comes first.
@@ -27,7 +31,7 @@ TEST(LostEdges, HangTogetherInPlaces) {
     std::vector<LostSample> samples;
     addStretch(samples, {0, 0, 0}, 4), addStretch(samples, {0.5, 0, 0}, 7), addStretch(samples, {0, 10, 0}, 4);
     const Surface surface = twoParts();
-    const LostEdges lost = gatherLostEdges(samples, SurfaceIndex(surface));
+    const LostEdges lost = gatherLostEdges(samples, allCrossed(samples), SurfaceIndex(surface));
     EXPECT_NEAR(lost.length, 15 * h / 4, 1e-12);
     ASSERT_EQ(lost.total, 3);
     ASSERT_EQ(lost.first.size(), 3u);
@@ -45,23 +49,39 @@ TEST(LostEdges, CountsPlacesThatItDoesNotKeep) {
     std::vector<LostSample> samples;
     addStretch(samples, {0, 0, 0}, 3), addStretch(samples, {5, 0, 0}, 3), addStretch(samples, {0.75 * h, 0, 0}, 3);
     const Surface surface = twoParts();
-    const LostEdges lost = gatherLostEdges(samples, SurfaceIndex(surface), 1);
+    const LostEdges lost = gatherLostEdges(samples, allCrossed(samples), SurfaceIndex(surface), 1);
     EXPECT_EQ(lost.total, 2);
     ASSERT_EQ(lost.first.size(), 1u);
     EXPECT_NEAR(lost.first[0].length, 6 * h / 4, 1e-12);
-    EXPECT_EQ(gatherLostEdges({}, SurfaceIndex(surface)).total, 0);
+    EXPECT_EQ(gatherLostEdges({}, {}, SurfaceIndex(surface)).total, 0);
+}
+
+// The cause of a place is that of most of its samples; the lengths by cause are those of samples.
+TEST(LostEdges, HaveTheCauseOfMost) {
+    std::vector<LostSample> samples;
+    addStretch(samples, {0, 0, 0}, 3), addStretch(samples, {5, 0, 0}, 2);
+    using enum LostCause;
+    const Surface surface = twoParts();
+    const LostEdges lost = gatherLostEdges(samples, {bridged, crossed, bridged, leftOut, leftOut}, SurfaceIndex(surface));
+    ASSERT_EQ(lost.total, 2);
+    EXPECT_EQ(lost.first[0].cause, bridged);
+    EXPECT_EQ(lost.first[1].cause, leftOut);
+    EXPECT_NEAR(lost.lengthOf[std::size_t(crossed)], h / 4, 1e-12);
+    EXPECT_NEAR(lost.lengthOf[std::size_t(bridged)], h / 2, 1e-12);
+    EXPECT_NEAR(lost.lengthOf[std::size_t(leftOut)], h / 2, 1e-12);
+    EXPECT_EQ(lost.lengthOf[std::size_t(shallow)], 0);
 }
 
 TEST(LostEdges, AreTheSameOnAnyNumberOfThreads) {
     std::vector<LostSample> samples;
-    for (int i = 0; i < 500; ++i) samples.push_back({{(i * 7919 % 1000) * 0.01, (i * 104729 % 1000) * 0.01, 0}, h + 0.001 * (i % 100)});
+    for (int i = 0; i < 500; ++i) samples.push_back(sampleOf({(i * 7919 % 1000) * 0.01, (i * 104729 % 1000) * 0.01, 0}, h + 0.001 * (i % 100)));
     const Surface surface = twoParts();
     const SurfaceIndex index(surface);
-    const LostEdges all = gatherLostEdges(samples, index);
+    const LostEdges all = gatherLostEdges(samples, allCrossed(samples), index);
     EXPECT_GT(all.total, 50);
     for (const std::size_t threads : {1u, 3u, 8u}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        const LostEdges again = gatherLostEdges(samples, index);
+        const LostEdges again = gatherLostEdges(samples, allCrossed(samples), index);
         ASSERT_EQ(again.total, all.total);
         EXPECT_EQ(again.length, all.length);
         for (std::size_t i = 0; i < all.first.size(); ++i) {

@@ -33,7 +33,7 @@ RunReport sample() {
     r.changes = {2, 3, {{1, 2, 3}}, 4};
     r.fit.emplace();
     r.fitCutShort = true;
-    r.fit->lostEdges = {0.75, 4, {{0.5, {1, 2, 3}, {{0, 2, 3}, {2, 2, 3}}, "body"}}};
+    r.fit->lostEdges = {0.75, {0.5, 0.25, 0, 0}, 4, {{0.5, {1, 2, 3}, {{0, 2, 3}, {2, 2, 3}}, "body", LostCause::shallow}}};
     r.offGeometry.emplace();
     r.offGeometry->counts[static_cast<std::size_t>(OffCause::gap)] = 3;
     r.offGeometry->places = {1, {{3, {1, 2, 3}, {{1, 2, 3}, {1, 2, 3}}, 0.5, {1, 2, 3}, OffCause::gap, "body"}}};
@@ -74,7 +74,8 @@ TEST(ReportWrite, HasTheContractsKeys) {
                                                         "tilted_45_face_fraction",
                                                         "cut_short", "lost_edges", "off_geometry"));
     EXPECT_EQ(json["fit"]["lost_edges"].dump(),
-              R"({"length":0.75,"places_total":4,"places":[{"length":0.5,"part":"body","at":[1.0,2.0,3.0],"box":[[0.0,2.0,3.0],[2.0,2.0,3.0]]}]})");
+              R"({"length":0.75,"length_by_cause":{"shallow":0.5,"crossed":0.25,"bridged":0.0,"left_out":0.0},"places_total":4,)"
+              R"("places":[{"length":0.5,"part":"body","cause":"shallow","at":[1.0,2.0,3.0],"box":[[0.0,2.0,3.0],[2.0,2.0,3.0]]}]})");
     const Json& off = json["fit"]["off_geometry"];
     EXPECT_THAT(keys(off), testing::ElementsAre("nodes", "fraction", "causes", "places_total", "places", "tilted_nodes",
                                                 "tilted_places_total", "tilted_places"));

@@ -87,7 +87,9 @@ void measureCapture(const PolyMesh& mesh, const Wall& wall, const SurfaceIndex& 
         [&](const Vec3& p, std::uint32_t, const WallPlace& at) { return bool(creaseIndex.closest(p, 0.1 * at.h)); });
     report.featureSamples = n.samples;
     report.featureCaptureFraction = n.captured();
-    report.lostEdges = gatherLostEdges(n.lost, index);
+    std::vector<LostCause> causes;
+    for (const LostSample& sample : n.lost) causes.push_back(causeOf(sample, mesh, wall, sharpEdges));
+    report.lostEdges = gatherLostEdges(n.lost, causes, index);
 }
 
 } // namespace i2b

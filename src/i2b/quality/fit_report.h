@@ -30,6 +30,8 @@
 #include "i2b/assemble/mesh_topology.h"
 #include "i2b/geometry/features.h"
 #include "i2b/geometry/surface_index.h"
+#include "i2b/quality/lost_cause.h"
+#include <array>
 #include <string>
 #include <vector>
 
@@ -41,10 +43,12 @@ struct LostEdge {
     Vec3 at;           // m, a place on it, in its middle
     Box box;           // m
     std::string part;  // of the geometry
+    LostCause cause = LostCause::crossed; // of most of it
 };
 
 struct LostEdges {
-    double length = 0;           // m, of all
+    double length = 0;           // m, of all,
+    std::array<double, lostCauses> lengthOf{}; // and by cause
     std::int64_t total = 0;      // stretches
     std::vector<LostEdge> first; // of them, longest first
 };

@@ -178,7 +178,7 @@ LineSamples captureLines(const PolyMesh& mesh, const Wall& wall, const Surface& 
             const WallPlace at = reach.at(s.point, largestH / 2);
             if (at.face < 0 || at.distance > at.h / 2 || !isResolvable(lines, lineIndex, s, at.h) || !counts(s.point, s.line, at)) continue;
             ++n.samples;
-            if (!isCaptured(s.point, s.line, at)) n.lost.push_back({s.point, at.h});
+            if (!isCaptured(s.point, s.line, at)) n.lost.push_back({s.point, s.line, at});
         }
         return n;
     };

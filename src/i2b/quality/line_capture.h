@@ -15,8 +15,9 @@ struct WallPlace {
 };
 
 struct LostSample {
-    Vec3 point;   // m
-    double h = 0; // m, of the wall there
+    Vec3 point; // m
+    std::uint32_t line = 0;
+    WallPlace at;
 };
 
 struct LineSamples {

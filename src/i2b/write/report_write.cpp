@@ -100,8 +100,10 @@ Json offGeometryJson(const OffGeometry& off) {
 Json lostEdgesJson(const LostEdges& lost) {
     Json places = Json::array();
     for (const LostEdge& e : lost.first)
-        places.push_back({{"length", number(e.length)}, {"part", e.part}, {"at", place(e.at)}, {"box", Json::array({place(e.box.lo), place(e.box.hi)})}});
-    return {{"length", number(lost.length)}, {"places_total", lost.total}, {"places", places}};
+        places.push_back({{"length", number(e.length)}, {"part", e.part}, {"cause", nameOf(e.cause)}, {"at", place(e.at)}, {"box", Json::array({place(e.box.lo), place(e.box.hi)})}});
+    Json lengths;
+    for (std::size_t i = 0; i < lostCauses; ++i) lengths[nameOf(static_cast<LostCause>(i))] = number(lost.lengthOf[i]);
+    return {{"length", number(lost.length)}, {"length_by_cause", lengths}, {"places_total", lost.total}, {"places", places}};
 }
 
 Json layersJson(const LayerReport& l) {
