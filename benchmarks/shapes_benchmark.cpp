@@ -104,11 +104,12 @@ const char* nameOf(Side side) { return side == Side::inside ? "inside" : "outsid
 
 void record(std::ofstream& out, const std::string& name, double h, unsigned pose, const ShapeRun& run) {
     if (!out.is_open()) return;
-    out << fmt::format("{},{},{},{},{:.2f},{:.3f},{:.5f},{},{:.3f},{:.5f},{:.5f},{:.4f},{:.4f},{},{}\n", name, h, pose,
+    const auto& lost = run.fit.lostEdges.lengthOf;
+    out << fmt::format("{},{},{},{},{:.2f},{:.3f},{:.5f},{},{:.3f},{:.5f},{:.5f},{:.4f},{:.4f},{:.2f},{:.2f},{:.2f},{:.2f},{},{}\n", name, h, pose,
                        run.quality.cells,
                        run.quality.maxNonOrthogonality, run.quality.maxSkewness, run.fit.featureCaptureFraction,
                        run.fit.featureSamples, run.sampled, run.fit.wallNodesOnGeometryFraction, run.fit.tiltedFaceFraction,
-                       run.fit.meanDistanceInH, run.fit.maxDistanceInH, plainFailures(run.quality), run.fault)
+                       run.fit.meanDistanceInH, run.fit.maxDistanceInH, lost[0] / h, lost[1] / h, lost[2] / h, lost[3] / h, plainFailures(run.quality), run.fault)
         << std::flush;
 }
 
@@ -141,7 +142,7 @@ int main(int argc, char** argv) try {
     if (!a.runs.empty()) {
         runs.open(a.runs);
         runs << "shape,h,pose,cells,non_orthogonality,skewness,capture,samples,sampled,nodes_on_geometry,tilted,"
-                "faces_off_h,farthest_h,plain_failures,fault\n";
+                "faces_off_h,farthest_h,shallow_h,crossed_h,bridged_h,left_out_h,plain_failures,fault\n";
     }
     std::cout << "runs; how many invalid, and failing plain checkMesh; worst non-orthogonality, skewness, number of small\n"
                  "determinants + low weights + low volume ratios; then worst and mean: resolvable sharp edges captured (and\n"
