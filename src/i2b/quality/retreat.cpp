@@ -42,6 +42,11 @@ class Nodes {
             const auto p = static_cast<std::size_t>(i.ends[0]), q = static_cast<std::size_t>(i.ends[1]);
             wall_.push_back({wall_[p].start + (wall_[q].start - wall_[p].start) * i.t, front_.wall(wall_.size())});
         }
+        followers_ = collect<Follower>(fans - ahead_.size(), [&](std::size_t i, const auto& put) {
+            const std::size_t v = ahead_.size() + i;
+            forNodesOf(v, [&](std::size_t n) { put({n, v}); });
+        }, 1024);
+        tbb::parallel_sort(followers_);
         beta_.resize(core_ + fans), marks_.resize(core_ + fans);
         parallelFor(beta_.size(), [&](std::size_t n) { beta_[n] = 1, marks_[n] = 0; }, 8192);
         bend_.resize(layers.columns.size());
@@ -90,12 +95,24 @@ class Nodes {
         const Front::Inserted& i = front_.inserted[v - ahead_.size()];
         return i.frontAt(frontNow(static_cast<std::size_t>(i.ends[0])), frontNow(static_cast<std::size_t>(i.ends[1])), wall_[v].at(beta_[core_ + v]));
     }
+    // f(node) for those on which the front position of an inserted fan hangs, with repeats.
+    template <class F>
+    void forNodesOf(std::size_t v, const F& f) const {
+        if (v < ahead_.size()) return f(static_cast<std::size_t>(front_.corePoint[v]));
+        f(core_ + v);
+        for (const std::int32_t end : front_.inserted[v - ahead_.size()].ends) forNodesOf(static_cast<std::size_t>(end), f);
+    }
     bool isTouched(std::size_t n) const { return (marks_[n] & touched) != 0; }
     bool frontTouched(std::size_t v) const {
         if (v < ahead_.size()) return isTouched(static_cast<std::size_t>(front_.corePoint[v]));
         const Front::Inserted& i = front_.inserted[v - ahead_.size()];
         return isTouched(core_ + v) || frontTouched(static_cast<std::size_t>(i.ends[0])) || frontTouched(static_cast<std::size_t>(i.ends[1]));
     }
+
+    struct Follower { // an inserted fan whose front position hangs on a node
+        std::size_t node, fan;
+        friend auto operator<=>(const Follower&, const Follower&) = default;
+    };
 
     const Front& front_;
     const MeshNodes& meshNodes_;
@@ -104,6 +121,7 @@ class Nodes {
     RawVector<Path> behind_;             // as front.movedPoints
     RawVector<Path> ahead_;              // per fan that the lattice has
     RawVector<Path> wall_;               // per fan
+    RawVector<Follower> followers_;      // sorted
     RawVector<float> bend_;              // per fan, of its column at the end of the fit; empty: all straight
     RawVector<float> beta_;              // per node
     enum Mark : std::uint8_t { stepped = 1, touched = 2 }; // back ever; set since nodes were placed last
@@ -119,6 +137,7 @@ std::vector<std::int32_t> Nodes::place(RawVector<Vec3>& points) {
     };
     std::vector<std::size_t> fans; // that stand elsewhere now, or their front points
     for (const std::size_t n : touched_) {
+        for (auto at = std::ranges::lower_bound(followers_, n, {}, &Follower::node); at != followers_.end() && at->node == n; ++at) fans.push_back(at->fan);
         if (n >= core_) {
             fans.push_back(n - core_);
             continue;
@@ -127,8 +146,6 @@ std::vector<std::int32_t> Nodes::place(RawVector<Vec3>& points) {
         const auto [first, last] = meshNodes_.fansOf(static_cast<std::int32_t>(n));
         fans.insert(fans.end(), first, last);
     }
-    for (std::size_t v = ahead_.size(); v < wall_.size() && !touched_.empty(); ++v)
-        if (frontTouched(v)) fans.push_back(v);
     sortUnique(fans);
     for (const std::size_t v : fans) {
         if (frontTouched(v)) put(static_cast<std::size_t>(front_.corePoint[v]), frontNow(v));
