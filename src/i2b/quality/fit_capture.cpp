@@ -1,4 +1,5 @@
 // How much of the geometry's sharp edges the wall has captured.
+#include "i2b/core/collect.h"
 #include "i2b/core/quantile.h"
 #include "i2b/geometry/rims.h"
 #include "i2b/quality/lost_edges.h"
@@ -16,20 +17,21 @@ constexpr double beside = 0.1;           // of h: what is seen so far to both si
 
 // Edges of the wall where two of its faces fold by more than the crease angle.
 Surface creaseSurface(const PolyMesh& mesh, const Wall& wall) {
-    Surface s;
-    for (std::size_t i = 0, end = 0; i < wall.edges.size(); i = end) {
-        const WallEdge& e = wall.edges[i];
-        bool folded = false;
-        for (end = i; end < wall.edges.size() && wall.edges[end].a == e.a && wall.edges[end].b == e.b; ++end)
+    const std::vector<WallEdge>& edges = wall.edges;
+    const auto isSame = [&](std::size_t i, std::size_t k) { return edges[i].a == edges[k].a && edges[i].b == edges[k].b; };
+    const RawVector<std::size_t> folded = collect<std::size_t>(edges.size(), [&](std::size_t i, const auto& put) {
+        if (i > 0 && isSame(i - 1, i)) return; // told with the first
+        bool folds = false;
+        for (std::size_t end = i; end < edges.size() && isSame(i, end); ++end)
             for (std::size_t k = i; k < end; ++k) {
-                const Vec3& m = wall.shapes[static_cast<std::size_t>(wall.edges[k].face)].area;
-                const Vec3& n = wall.shapes[static_cast<std::size_t>(wall.edges[end].face)].area;
-                folded |= norm2(m) > 0 && norm2(n) > 0 && degreesBetween(m, n) > creaseAngle;
+                const Vec3& m = wall.shapes[static_cast<std::size_t>(edges[k].face)].area;
+                const Vec3& n = wall.shapes[static_cast<std::size_t>(edges[end].face)].area;
+                folds |= norm2(m) > 0 && norm2(n) > 0 && degreesBetween(m, n) > creaseAngle;
             }
-        if (folded)
-            addSegment(s, mesh.points[static_cast<std::size_t>(e.a)],
-                       mesh.points[static_cast<std::size_t>(e.b)]);
-    }
+        if (folds) put(i);
+    }, 1024);
+    Surface s;
+    for (const std::size_t i : folded) addSegment(s, mesh.points[static_cast<std::size_t>(edges[i].a)], mesh.points[static_cast<std::size_t>(edges[i].b)]);
     return s;
 }
 

@@ -1,4 +1,5 @@
 #include "i2b/quality/fit_wall.h"
+#include "i2b/core/collect.h"
 #include "i2b/core/parallel.h"
 #include "i2b/core/quantile.h"
 #include <algorithm>
@@ -81,6 +82,14 @@ class WayIn {
     std::vector<double> lengths_;
 };
 
+// Per face how many corners those before it have, and of all.
+std::vector<std::size_t> cornersBefore(const PolyMesh& mesh, const std::vector<std::int32_t>& faces) {
+    std::vector<std::size_t> before(faces.size() + 1, 0);
+    parallelFor(faces.size(), [&](std::size_t i) { before[i] = mesh.face(faces[i]).size(); }, 4096);
+    exclusiveScan(before);
+    return before;
+}
+
 // Of each face the size of the cell behind it; of each node the median of the faces around it; of each face that of
 // its nodes.
 void measureSizes(const PolyMesh& mesh, const Rows& cellFaces, Wall& wall) {
@@ -89,9 +98,8 @@ void measureSizes(const PolyMesh& mesh, const Rows& cellFaces, Wall& wall) {
         double size; // of a face
         bool operator<(const Around& o) const { return node != o.node ? node < o.node : size < o.size; }
     };
-    std::vector<std::size_t> start(wall.faces.size());
-    for (std::size_t i = 0; i < start.size(); ++i) start[i] = mesh.face(wall.faces[i]).size();
-    std::vector<Around> around(exclusiveScan(start));
+    const std::vector<std::size_t> start = cornersBefore(mesh, wall.faces);
+    std::vector<Around> around(start.back());
     parallelChunks(wall.faces.size(), 512, [&](std::size_t begin, std::size_t end, std::size_t) {
         WayIn way(mesh, cellFaces);
         for (std::size_t i = begin; i < end; ++i) {
@@ -101,12 +109,15 @@ void measureSizes(const PolyMesh& mesh, const Rows& cellFaces, Wall& wall) {
         }
     });
     tbb::parallel_sort(around);
-    for (std::size_t i = 0, end = 0; i < around.size(); i = end) {
-        for (end = i; end < around.size() && around[end].node == around[i].node; ++end) {
-        }
-        wall.nodes.push_back(around[i].node);
-        wall.nodeH.push_back(around[i + (end - i - 1) / 2].size);
-    }
+    const RawVector<std::size_t> first = collect<std::size_t>(around.size(), [&](std::size_t i, const auto& put) {
+        if (i == 0 || around[i - 1].node != around[i].node) put(i);
+    });
+    wall.nodes.resize(first.size()), wall.nodeH.resize(first.size());
+    parallelFor(first.size(), [&](std::size_t n) {
+        const std::size_t end = n + 1 < first.size() ? first[n + 1] : around.size();
+        wall.nodes[n] = around[first[n]].node;
+        wall.nodeH[n] = around[first[n] + (end - first[n] - 1) / 2].size;
+    }, 4096);
     wall.faceH.resize(wall.faces.size());
     parallelFor(wall.faces.size(), [&](std::size_t i) {
         std::vector<double> sizes;
@@ -127,13 +138,15 @@ Wall collectWall(const PolyMesh& mesh, const Rows& cellFaces, const std::vector<
         if (isChosen(patch, patches))
             for (std::int32_t f = patch.start; f < patch.start + patch.count; ++f) wall.faces.push_back(f);
     std::sort(wall.faces.begin(), wall.faces.end());
-    for (std::size_t i = 0; i < wall.faces.size(); ++i) {
+    const std::vector<std::size_t> start = cornersBefore(mesh, wall.faces);
+    wall.edges.resize(start.back());
+    parallelFor(wall.faces.size(), [&](std::size_t i) {
         const auto face = mesh.face(wall.faces[i]);
         for (std::size_t k = 0; k < face.size(); ++k) {
             const auto [a, b] = std::minmax(face[k], face[(k + 1) % face.size()]);
-            wall.edges.push_back({a, b, static_cast<std::int32_t>(i)});
+            wall.edges[start[i] + k] = {a, b, static_cast<std::int32_t>(i)};
         }
-    }
+    }, 1024);
     tbb::parallel_sort(wall.edges);
     wall.shapes.resize(wall.faces.size());
     parallelFor(wall.faces.size(), [&](std::size_t i) { wall.shapes[i] = measureFace(mesh, wall.faces[i]); });
