@@ -284,7 +284,12 @@ void ZipFinder::addColumns(const std::vector<Index>& faces, std::vector<Column> 
                 over.points.push_back(c.levels[j][i]), over.share.push_back(length);
             }
             for (double& share : over.share) share /= std::max(length, 1e-300);
+            RimZip::Column bow{over.points, over.share};
             zip.columns.push_back(std::move(over));
+            if (bow.points.size() < 2) continue;
+            bow.points.pop_back(), bow.share.pop_back();
+            for (double& share : bow.share) share *= 4 * (1 - share);
+            zip.columns.push_back(std::move(bow));
         }
     }
     sortUnique(zip.star);
