@@ -138,7 +138,7 @@ void expectSmooth(const MeshResult& result, double onGeometry, double tilted) {
 TEST(ThinSheets, BothRimsOfAnOpenTubeAreMet) { expectSmooth(meshTube(openTube(0.06, 0.01, 96), 0.00284), 0.99, 0.02); }
 
 // Where both rims are a third of a cell past planes of the lattice, rows of nodes beside them are as near as those beyond, which have to
-// come from farther. Left where they were, 97.7 % of the nodes were on the geometry and 89 % of the rims captured.
+// come from farther. Left where they were, 97.7 % of the nodes were on the geometry and 89 % of the rims captured; with straight columns 98.2 and 91.
 TEST(ThinSheets, RimsBetweenPlanesOfTheLatticeAreMet) {
     constexpr double length = 0.011;
     double onGeometry = 0, captured = 0;
@@ -149,8 +149,8 @@ TEST(ThinSheets, RimsBetweenPlanesOfTheLatticeAreMet) {
         onGeometry += result.report.fit->wallNodesOnGeometryFraction / 3;
         captured += result.report.fit->featureCaptureFraction / 3;
     }
-    EXPECT_GT(onGeometry, 0.98);
-    EXPECT_GT(captured, 0.9);
+    EXPECT_GT(onGeometry, 0.985);
+    EXPECT_GT(captured, 0.94);
 }
 
 // As CAD programs write extruded walls: strips over a thousand times as long as wide. The wall is as smooth on them as on any triangles.

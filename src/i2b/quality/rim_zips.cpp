@@ -284,12 +284,15 @@ void ZipFinder::addColumns(const std::vector<Index>& faces, std::vector<Column> 
                 over.points.push_back(c.levels[j][i]), over.share.push_back(length);
             }
             for (double& share : over.share) share /= std::max(length, 1e-300);
-            RimZip::Column bow{over.points, over.share};
+            const RimZip::Column whole = over;
             zip.columns.push_back(std::move(over));
-            if (bow.points.size() < 2) continue;
-            bow.points.pop_back(), bow.share.pop_back();
-            for (double& share : bow.share) share *= 4 * (1 - share);
-            zip.columns.push_back(std::move(bow));
+            // With several layers it may bow, too, most in its middle or near the wall.
+            for (const int power : {2, 1}) {
+                RimZip::Column bow = whole;
+                bow.points.pop_back(), bow.share.pop_back();
+                for (double& s : bow.share) s *= power == 1 ? 4 * (1 - s) : 6.75 * (1 - s) * (1 - s);
+                if (!bow.points.empty()) zip.columns.push_back(std::move(bow));
+            }
         }
     }
     sortUnique(zip.star);
