@@ -28,9 +28,9 @@ struct RimZip {
     std::vector<std::pair<std::uint64_t, std::vector<std::int32_t>>> through; // edges led through points, from their lower end on
     std::vector<std::pair<std::int32_t, std::int32_t>> cells;                 // what they become: the lowest of those made one
     std::vector<std::int32_t> star;                                           // cells around, ascending
-    struct Column { // over a node of the wall in or beside it
-        std::vector<std::int32_t> points; // the front's last
-        std::vector<double> share;        // of a move of that, which each takes
+    struct Column { // points over a node of the wall in or beside it that move as one
+        std::vector<std::int32_t> points; // away from the wall
+        std::vector<double> share;        // of the move, which each takes
     };
     std::vector<Column> columns;
     double h = 0; // m

@@ -259,6 +259,20 @@ void ZipFinder::addMoves(const std::vector<Column>& columns, const std::map<std:
     }
 }
 
+// How a column may be moved: as a whole, with the end on the front; its other points by themselves, in the measure of their layers; and bowed
+// between its ends, most near the wall or in its middle.
+void addBends(const RimZip::Column& whole, std::vector<RimZip::Column>& columns) {
+    columns.push_back(whole);
+    const Index inner = whole.points.size() - 1;
+    if (inner == 0) return;
+    for (Index j = 0; j < inner; ++j) columns.push_back({{whole.points[j]}, {whole.share[j + 1] - (j > 0 ? whole.share[j - 1] : 0)}});
+    RimZip::Column nearWall{{whole.points.begin(), whole.points.end() - 1}, {whole.share.begin(), whole.share.end() - 1}}, middle = nearWall;
+    for (double& s : nearWall.share) s *= 6.75 * (1 - s) * (1 - s); // at most 1
+    for (double& s : middle.share) s *= 4 * (1 - s);
+    columns.push_back(std::move(nearWall));
+    columns.push_back(std::move(middle));
+}
+
 // With those over the nodes beside the group, which may be moved with them.
 void ZipFinder::addColumns(const std::vector<Index>& faces, std::vector<Column> columns, RimZip& zip) const {
     std::vector<std::int32_t> around;
@@ -284,15 +298,7 @@ void ZipFinder::addColumns(const std::vector<Index>& faces, std::vector<Column> 
                 over.points.push_back(c.levels[j][i]), over.share.push_back(length);
             }
             for (double& share : over.share) share /= std::max(length, 1e-300);
-            const RimZip::Column whole = over;
-            zip.columns.push_back(std::move(over));
-            // With several layers it may bow, too, most in its middle or near the wall.
-            for (const int power : {2, 1}) {
-                RimZip::Column bow = whole;
-                bow.points.pop_back(), bow.share.pop_back();
-                for (double& s : bow.share) s *= power == 1 ? 4 * (1 - s) : 6.75 * (1 - s) * (1 - s);
-                if (!bow.points.empty()) zip.columns.push_back(std::move(bow));
-            }
+            addBends(over, zip.columns);
         }
     }
     sortUnique(zip.star);
