@@ -39,18 +39,18 @@ namespace i2b {
 
 // A stretch of sharp edges that the wall has not captured (lost_edges.h).
 struct LostEdge {
-    double length = 0; // m
-    Vec3 at;           // m, a place on it, in its middle
-    Box box;           // m
-    std::string part;  // of the geometry
+    double length = 0;                    // m
+    Vec3 at;                              // m, a place on it, in its middle
+    Box box;                              // m
+    std::string part;                     // of the geometry
     LostCause cause = LostCause::crossed; // of most of it
 };
 
 struct LostEdges {
-    double length = 0;           // m, of all,
+    double length = 0;                         // m, of all,
     std::array<double, lostCauses> lengthOf{}; // and by cause
-    std::int64_t total = 0;      // stretches
-    std::vector<LostEdge> first; // of them, longest first
+    std::int64_t total = 0;                    // stretches
+    std::vector<LostEdge> first;               // of them, longest first
 };
 
 struct FitReport {

@@ -15,8 +15,8 @@ struct WallPlace {
 };
 
 struct LostSample {
-    Vec3 point; // m
-    std::uint32_t line = 0;
+    Vec3 point;             // m
+    std::uint32_t line = 0; // its triangle of the lines
     WallPlace at;
 };
 
