@@ -89,8 +89,8 @@ void measureCapture(const PolyMesh& mesh, const Wall& wall, const SurfaceIndex& 
         [&](const Vec3& p, std::uint32_t, const WallPlace& at) { return bool(creaseIndex.closest(p, 0.1 * at.h)); });
     report.featureSamples = n.samples;
     report.featureCaptureFraction = n.captured();
-    std::vector<LostCause> causes;
-    for (const LostSample& sample : n.lost) causes.push_back(causeOf(sample, mesh, wall, sharpEdges));
+    std::vector<LostCause> causes(n.lost.size());
+    parallelFor(causes.size(), [&](std::size_t i) { causes[i] = causeOf(n.lost[i], mesh, wall, sharpEdges); }, 64);
     report.lostEdges = gatherLostEdges(n.lost, causes, index);
 }
 

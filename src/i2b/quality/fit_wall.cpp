@@ -91,14 +91,13 @@ std::vector<std::size_t> cornersBefore(const PolyMesh& mesh, const std::vector<s
 }
 
 // Of each face the size of the cell behind it; of each node the median of the faces around it; of each face that of
-// its nodes.
-void measureSizes(const PolyMesh& mesh, const Rows& cellFaces, Wall& wall) {
+// its nodes. start: cornersBefore() of the faces.
+void measureSizes(const PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::size_t>& start, Wall& wall) {
     struct Around {
         std::int32_t node;
         double size; // of a face
         bool operator<(const Around& o) const { return node != o.node ? node < o.node : size < o.size; }
     };
-    const std::vector<std::size_t> start = cornersBefore(mesh, wall.faces);
     std::vector<Around> around(start.back());
     parallelChunks(wall.faces.size(), 512, [&](std::size_t begin, std::size_t end, std::size_t) {
         WayIn way(mesh, cellFaces);
@@ -150,7 +149,7 @@ Wall collectWall(const PolyMesh& mesh, const Rows& cellFaces, const std::vector<
     tbb::parallel_sort(wall.edges);
     wall.shapes.resize(wall.faces.size());
     parallelFor(wall.faces.size(), [&](std::size_t i) { wall.shapes[i] = measureFace(mesh, wall.faces[i]); });
-    measureSizes(mesh, cellFaces, wall);
+    measureSizes(mesh, cellFaces, start, wall);
     return wall;
 }
 

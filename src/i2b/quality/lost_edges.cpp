@@ -14,11 +14,6 @@ constexpr double nearWall = 0.1; // of h: farther from the wall than this, an ed
 constexpr double beside = 0.1;   // sine: what is over the rim of a face, level with it, is not before it
 constexpr double along = 0.9;    // cosine: an edge of the wall that follows a line
 
-double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
-    const Vec3 ab = b - a;
-    return norm(a + ab * std::clamp(dot(p - a, ab) / std::max(norm2(ab), 1e-300), 0.0, 1.0) - p);
-}
-
 LostCause causeOfMost(const std::vector<std::uint32_t>& samples, const std::vector<LostCause>& causes) {
     std::array<int, lostCauses> times{};
     for (const std::uint32_t s : samples) ++times[Index(causes[s])];
@@ -36,7 +31,7 @@ LostCause causeOf(const LostSample& sample, const PolyMesh& mesh, const Wall& wa
     const auto face = mesh.face(wall.faces[Index(at.face)]);
     for (Index i = 0; i < face.size(); ++i) {
         const Vec3 &a = mesh.points[Index(face[i])], &b = mesh.points[Index(face[(i + 1) % face.size()])];
-        if (distanceToSegment(sample.point, a, b) <= nearWall * at.h && std::abs(dot(normalized(b - a), tangent)) > along) return LostCause::shallow;
+        if (norm(closestPointOnTriangle(sample.point, a, b, b) - sample.point) <= nearWall * at.h && std::abs(dot(normalized(b - a), tangent)) > along) return LostCause::shallow;
     }
     return LostCause::crossed;
 }
