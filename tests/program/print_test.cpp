@@ -40,10 +40,10 @@ TEST(SummaryText, NamesTheLongestLostEdges) {
     EXPECT_THAT(summaryText(report), Not(HasSubstr("lost")));
     LostEdges& lost = report.fit->lostEdges;
     for (int i = 0; i < 4; ++i) lost.first.push_back({0.5 / (i + 1), {1.5, double(i), -2}, {}, "part" + std::to_string(i), static_cast<LostCause>(i)});
-    lost.total = 9, lost.length = 1.25, lost.lengthOf = {0.75, 0, 0, 0.5};
+    lost.total = 9, lost.lengthOf = {0.75, 0, 0, 0.5};
     EXPECT_THAT(summaryText(report), HasSubstr("\n9 places where sharp edges are lost, 1.2 m in all (0.75 m shallow, 0.5 m left_out): 0.5 m at (1.5 0 -2) on part0, shallow; "
                                                "0.25 m at (1.5 1 -2) on part1, crossed; 0.17 m at (1.5 2 -2) on part2, bridged; ...\n"));
-    lost.first.resize(1), lost.total = 1, lost.length = 0.5, lost.lengthOf = {0.5};
+    lost.first.resize(1), lost.total = 1, lost.lengthOf = {0.5};
     EXPECT_THAT(fitText(*report.fit), HasSubstr("\n    1 place where sharp edges are lost, 0.5 m in all (0.5 m shallow): 0.5 m at (1.5 0 -2) on part0, shallow\n"));
 }
 

@@ -302,7 +302,7 @@ TEST(FitMeasure, sharpEdgesWhereTheWallGoesOnAreNotAskedFor) {
 TEST(FitMeasure, lostEdgesAreListed) {
     const FitReport r = fit(cubeWall([](Vec3 p) { return p; }), boxWithBlock(1 - 0.1 * h, 1.5));
     ASSERT_EQ(r.lostEdges.total, 4);
-    EXPECT_NEAR(r.lostEdges.length, 4 * (0.5 - 2 * h), 4 * h / 4);
+    EXPECT_NEAR(r.lostEdges.length(), 4 * (0.5 - 2 * h), 4 * h / 4);
     for (const LostEdge& e : r.lostEdges.first) {
         EXPECT_NEAR(e.length, 0.5 - 2 * h, h / 4);
         EXPECT_NEAR(e.at.z, 1 - 0.1 * h, 1e-12);
@@ -349,7 +349,7 @@ TEST(FitMeasure, rimsOfSheetsAreSharpEdges) {
     EXPECT_NEAR(double(whole.featureSamples), 4 * (4 * n - 8), 8);
     EXPECT_DOUBLE_EQ(whole.featureCaptureFraction, 1);
     EXPECT_EQ(cut.lostEdges.total, 1);
-    EXPECT_NEAR(cut.lostEdges.length, 1 - 2 * h, h / 2);
+    EXPECT_NEAR(cut.lostEdges.length(), 1 - 2 * h, h / 2);
     EXPECT_NEAR(cut.lostEdges.first.at(0).at.x, 1, 1e-12);
     EXPECT_EQ(measured(sheet, 1, false).featureSamples, 0);
     Surface cracked = sheet; // and goes on 0.1 h behind the end

@@ -32,7 +32,7 @@ TEST(LostEdges, HangTogetherInPlaces) {
     addStretch(samples, {0, 0, 0}, 4), addStretch(samples, {0.5, 0, 0}, 7), addStretch(samples, {0, 10, 0}, 4);
     const Surface surface = twoParts();
     const LostEdges lost = gatherLostEdges(samples, allCrossed(samples), SurfaceIndex(surface));
-    EXPECT_NEAR(lost.length, 15 * h / 4, 1e-12);
+    EXPECT_NEAR(lost.length(), 15 * h / 4, 1e-12);
     ASSERT_EQ(lost.total, 3);
     ASSERT_EQ(lost.first.size(), 3u);
     EXPECT_NEAR(lost.first[0].length, 7 * h / 4, 1e-12);
@@ -83,7 +83,7 @@ TEST(LostEdges, AreTheSameOnAnyNumberOfThreads) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
         const LostEdges again = gatherLostEdges(samples, allCrossed(samples), index);
         ASSERT_EQ(again.total, all.total);
-        EXPECT_EQ(again.length, all.length);
+        EXPECT_EQ(again.length(), all.length());
         for (std::size_t i = 0; i < all.first.size(); ++i) {
             EXPECT_EQ(again.first[i].length, all.first[i].length);
             EXPECT_EQ(again.first[i].at, all.first[i].at);

@@ -33,7 +33,7 @@ RunReport sample() {
     r.changes = {2, 3, {{1, 2, 3}}, 4};
     r.fit.emplace();
     r.fitCutShort = true;
-    r.fit->lostEdges = {0.75, {0.5, 0.25, 0, 0}, 4, {{0.5, {1, 2, 3}, {{0, 2, 3}, {2, 2, 3}}, "body", LostCause::shallow}}};
+    r.fit->lostEdges = {{0.5, 0.25, 0, 0}, 4, {{0.5, {1, 2, 3}, {{0, 2, 3}, {2, 2, 3}}, "body", LostCause::shallow}}};
     r.offGeometry.emplace();
     r.offGeometry->counts[static_cast<std::size_t>(OffCause::gap)] = 3;
     r.offGeometry->places = {1, {{3, {1, 2, 3}, {{1, 2, 3}, {1, 2, 3}}, 0.5, {1, 2, 3}, OffCause::gap, "body"}}};

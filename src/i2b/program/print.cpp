@@ -53,7 +53,7 @@ std::string lostEdgesLine(const LostEdges& lost) {
     std::vector<std::string> causes;
     for (std::size_t i = 0; i < lostCauses; ++i)
         if (lost.lengthOf[i] > 0) causes.push_back(fmt::format("{:.2g} m {}", lost.lengthOf[i], nameOf(static_cast<LostCause>(i))));
-    return placesLine(lost, fmt::format("sharp edges are lost, {:.2g} m in all ({})", lost.length, fmt::join(causes, ", ")), [](const LostEdge& e) {
+    return placesLine(lost, fmt::format("sharp edges are lost, {:.2g} m in all ({})", lost.length(), fmt::join(causes, ", ")), [](const LostEdge& e) {
         return fmt::format("{:.2g} m at ({:.4g} {:.4g} {:.4g}) on {}, {}", e.length, e.at.x, e.at.y, e.at.z, e.part, nameOf(e.cause));
     });
 }

@@ -32,6 +32,7 @@
 #include "i2b/geometry/surface_index.h"
 #include "i2b/quality/lost_cause.h"
 #include <array>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -47,10 +48,10 @@ struct LostEdge {
 };
 
 struct LostEdges {
-    double length = 0;                         // m, of all,
-    std::array<double, lostCauses> lengthOf{}; // and by cause
+    std::array<double, lostCauses> lengthOf{}; // m, by cause
     std::int64_t total = 0;                    // stretches
     std::vector<LostEdge> first;               // of them, longest first
+    double length() const { return std::accumulate(lengthOf.begin(), lengthOf.end(), 0.0); } // m, of all
 };
 
 struct FitReport {

@@ -58,7 +58,6 @@ LostEdges gatherLostEdges(const std::vector<LostSample>& samples, const std::vec
         if (place < 0) place = static_cast<std::int32_t>(places.size()), places.emplace_back();
         places[Index(place)].samples.push_back(static_cast<std::uint32_t>(i));
         places[Index(place)].length += spacing * samples[i].at.h;
-        lost.length += spacing * samples[i].at.h;
         lost.lengthOf[Index(causes[i])] += spacing * samples[i].at.h;
     }
     std::ranges::stable_sort(places, std::greater{}, &Place::length);

@@ -103,7 +103,7 @@ Json lostEdgesJson(const LostEdges& lost) {
         places.push_back({{"length", number(e.length)}, {"part", e.part}, {"cause", nameOf(e.cause)}, {"at", place(e.at)}, {"box", Json::array({place(e.box.lo), place(e.box.hi)})}});
     Json lengths;
     for (std::size_t i = 0; i < lostCauses; ++i) lengths[nameOf(static_cast<LostCause>(i))] = number(lost.lengthOf[i]);
-    return {{"length", number(lost.length)}, {"length_by_cause", lengths}, {"places_total", lost.total}, {"places", places}};
+    return {{"length", number(lost.length())}, {"length_by_cause", lengths}, {"places_total", lost.total}, {"places", places}};
 }
 
 Json layersJson(const LayerReport& l) {
