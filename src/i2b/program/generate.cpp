@@ -14,9 +14,9 @@
 #include "i2b/program/mesh_limits.h"
 #include "i2b/program/run_stage.h"
 #include "i2b/program/walls.h"
-#include "i2b/quality/close_rims.h"
-#include "i2b/quality/last_moves.h"
-#include "i2b/quality/last_resort.h"
+#include "i2b/rims/close_rims.h"
+#include "i2b/edit/last_moves.h"
+#include "i2b/edit/last_resort.h"
 #include "i2b/sizing/automatic.h"
 #include "i2b/sizing/estimate.h"
 #include <fmt/format.h>

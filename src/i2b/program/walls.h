@@ -6,7 +6,7 @@
 #include "i2b/layers/lay_on.h"
 #include "i2b/program/generate.h"
 #include "i2b/program/limits_in_reach.h"
-#include "i2b/quality/repair.h"
+#include "i2b/repair/repair.h"
 
 namespace i2b {
 

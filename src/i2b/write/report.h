@@ -4,7 +4,7 @@
 #include "i2b/layers/layer_report.h"
 #include "i2b/paint/regions.h"
 #include "i2b/quality/fit_report.h"
-#include "i2b/quality/last_resort.h"
+#include "i2b/edit/last_resort.h"
 #include "i2b/quality/off_places.h"
 #include "i2b/quality/quality_report.h"
 #include <cstdint>
