@@ -107,9 +107,11 @@ double Shaper::costAfter(const Column& c, const Vec3& by, double bound) {
     for (const std::int32_t f : c.faces) savedShapes_.push_back(shapes_[Index(f)]);
     for (const std::int32_t cell : c.cells) savedCentres_.push_back(centres_[Index(cell)]);
     place(c, by);
-    double sum = 0;
+    double sum = 0; // those that cost something already first, determinants, which take longest, at last: most moves cost too much soon
+    for (const bool costs : {true, false})
+        for (Index i = 0; i < c.judged.size() && sum <= bound; ++i)
+            if ((cost_[Index(c.judged[i])] > 0) == costs) sum += costOf(c.judged[i]);
     for (Index i = 0; i < c.cells.size() && sum <= bound; ++i) sum += costOfCell(c.cells[i]);
-    for (Index i = 0; i < c.judged.size() && sum <= bound; ++i) sum += costOf(c.judged[i]);
     for (Index i = 0; i < c.points.size(); ++i) mesh_.points[Index(c.points[i])] = saved_[i];
     for (Index i = 0; i < c.faces.size(); ++i) shapes_[Index(c.faces[i])] = savedShapes_[i];
     for (Index i = 0; i < c.cells.size(); ++i) centres_[Index(c.cells[i])] = savedCentres_[i];

@@ -196,14 +196,17 @@ LocalEdits::Surroundings ZipStar::around(State state, const PointMove& move, con
     const std::vector<std::int32_t> inner = withMembers(star);
     const auto nowOfCell = [&](std::int32_t cell) { return state == State::now ? cellNow(cell) : cell; };
     Numbering cells, points;
-    std::vector<std::int32_t> faces, loop;
+    std::vector<std::int32_t> faces, loop, loops; // of faces, one after the other
     for (const std::int32_t c : withMembers(withNeighbours(inner))) {
         cells.add(nowOfCell(c));
         faces.insert(faces.end(), cellFaces_[c].begin(), cellFaces_[c].end());
     }
     cells.close();
     sortUnique(faces);
-    struct Sides { std::int32_t face, owner, neighbour; };
+    struct Sides {
+        std::int32_t owner, neighbour;
+        Index begin, end; // in loops
+    };
     std::vector<Sides> sides;
     for (const std::int32_t f : faces) {
         const std::int32_t own = cells.placeOf(nowOfCell(mesh_.owner[Index(f)]));
@@ -211,7 +214,8 @@ LocalEdits::Surroundings ZipStar::around(State state, const PointMove& move, con
         if (own == next) continue;
         loopOf(f, state, move, loop);
         if (loop.size() < 3) continue;
-        sides.push_back({f, own, next});
+        sides.push_back({own, next, loops.size(), loops.size() + loop.size()});
+        loops.insert(loops.end(), loop.begin(), loop.end());
         std::ranges::for_each(loop, [&](std::int32_t p) { points.add(p); });
     }
     points.close();
@@ -229,11 +233,10 @@ LocalEdits::Surroundings ZipStar::around(State state, const PointMove& move, con
     mesh.faceOffsets.push_back(0);
     const auto isOuter = [&](std::int32_t cell) { return cell < 0 || result.outerCells[Index(cell)] != 0; };
     for (const bool internal : {true, false}) {
-        for (const auto& [f, own, next] : sides) {
+        for (const auto& [own, next, begin, end] : sides) {
             if ((own >= 0 && next >= 0) != internal) continue;
-            loopOf(f, state, move, loop);
-            if (own < 0 || (internal && own > next)) std::reverse(loop.begin() + 1, loop.end());
-            for (const std::int32_t p : loop) mesh.faceVertices.push_back(points.placeOf(p));
+            if (own < 0 || (internal && own > next)) std::reverse(loops.begin() + std::ptrdiff_t(begin) + 1, loops.begin() + std::ptrdiff_t(end));
+            for (Index i = begin; i < end; ++i) mesh.faceVertices.push_back(points.placeOf(loops[i]));
             mesh.faceOffsets.push_back(static_cast<std::uint32_t>(mesh.faceVertices.size()));
             mesh.owner.push_back(internal ? std::min(own, next) : std::max(own, next));
             if (internal) mesh.neighbour.push_back(std::max(own, next));

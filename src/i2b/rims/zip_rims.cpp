@@ -110,7 +110,6 @@ bool Zipper::openWorse() {
             markChanged(zips_[i]);
             continue;
         }
-        if (isWorse_[i]) markChanged(zips_[i]); // to be judged again
         if (kept < i) zips_[kept] = std::move(zips_[i]), before_[kept] = before_[i], isWorse_[kept] = isWorse_[i];
         for (const Zip::Column& column : zips_[kept].columns)
             for (const std::int32_t p : column.points)
