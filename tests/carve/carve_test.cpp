@@ -75,6 +75,7 @@ TEST_P(RandomSoups, GiveBackCellsThatHaveRoom) {
             const KeptCells kept = carve(p.grid, p.cut, p.regions, *p.index, c.options.fit);
             EXPECT_EQ(frontFault(p.grid, kept), "") << c.kind;
             EXPECT_EQ(wallBetweenKept(p.grid, p.cut, kept, *p.index), "") << c.kind;
+            EXPECT_EQ(voidInFlow(p.grid, p.cut, p.regions, kept), "") << c.kind << ", seed " << GetParam() + caseKinds * i;
             for (std::size_t threads : {1, 3}) {
                 const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
                 EXPECT_EQ(carve(p.grid, p.cut, p.regions, *p.index, c.options.fit).checksum(), kept.checksum());
@@ -133,6 +134,36 @@ TEST(Carve, MeshesNarrowSlotsAndClosesCracks) {
     const Index3 within = box.grid.lattice.cellAt(level, {0, 0, 0.85});
     EXPECT_FALSE(outside.levels[static_cast<std::size_t>(level)]->isValueOn(toCoord(within)));
     EXPECT_EQ(wallBetweenKept(box.grid, box.cut, outside, *box.index), "");
+}
+
+// An opening of two cells into a chamber: paint runs through, but all cells in it have vertices too near its edges. They come back as a
+// passage, and with them all of the chamber, whatever the size of its cells; without passages it is left out, and that is told.
+TEST(Carve, BringsBackWhatAPassageLeadsTo) {
+    RandomCase c = randomCase(0);
+    c.options.size = {};
+    c.options.size.surface = 0.1, c.options.size.max = 0.4;
+    c.options.domain.flow = Flow::external;
+    c.options.domain.box = Box{{-4, -4, -4}, {4, 4, 4}};
+    c.soup = Surface{};
+    c.soup.parts = {{"chamber", "", 14}};
+    addBlock(c.soup, {{-1.995, -1.995, -1.995}, {1.995, 1.995, 1.995}}, 0.105);
+    const Painted p(c);
+    const auto isKept = [&](const KeptCells& kept, const Vec3& at) {
+        for (std::size_t l = 0; l < kept.levels.size(); ++l)
+            if (kept.levels[l]->isValueOn(toCoord(p.grid.lattice.cellAt(static_cast<int>(l), at)))) return true;
+        return false;
+    };
+    const KeptCells kept = carve(p.grid, p.cut, p.regions, *p.index, FitOptions{});
+    EXPECT_FALSE(p.grid.levels.front().cells->isValueOff(toCoord(p.grid.lattice.cellAt(0, {0.1, 0.1, 0.1})))) << "the middle is coarse";
+    for (const Vec3& at : {Vec3{0.1, 0.1, 0.1}, Vec3{1.7, 1.7, 1.7}, Vec3{0.05, 0.05, 1.99}}) EXPECT_TRUE(isKept(kept, at)) << at.x << " " << at.z;
+    EXPECT_EQ(voidInFlow(p.grid, p.cut, p.regions, kept), "");
+    EXPECT_TRUE(kept.leftOut.empty());
+    FitOptions without;
+    without.passages = false;
+    const KeptCells outside = carve(p.grid, p.cut, p.regions, *p.index, without);
+    EXPECT_FALSE(isKept(outside, {0.1, 0.1, 0.1}));
+    ASSERT_EQ(outside.leftOut.size(), 1u);
+    EXPECT_EQ(outside.leftOut[0].cells, outside.droppedIslands);
 }
 
 // A passage one cell wide between walls that fill their cells: nothing can be left of it.

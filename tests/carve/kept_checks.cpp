@@ -93,6 +93,26 @@ std::string frontFault(const CellGrid& grid, const KeptCells& kept) {
     return "";
 }
 
+std::string voidInFlow(const CellGrid& grid, const CutCells& cut, const Regions& regions, const KeptCells& kept) {
+    const CellArray array(grid);
+    const std::vector<bool> isKept = array.flagged(kept.levels);
+    std::vector<bool> hasCause = array.flagged(cut.levels); // the geometry, or flow that is not to be meshed
+    for (const Region& region : regions.table) {
+        if (region.painted) continue;
+        const std::vector<bool> other = array.flagged(regions.cellsOf(region.id));
+        for (std::size_t c = 0; c < other.size(); ++c) hasCause[c] = hasCause[c] || other[c];
+    }
+    std::vector<bool> isMissing(isKept.size());
+    for (std::size_t c = 0; c < isKept.size(); ++c) isMissing[c] = !isKept[c];
+    const std::vector<int> label = array.flood(isMissing);
+    std::vector<bool> isCaused(label.size());
+    for (std::size_t c = 0; c < label.size(); ++c)
+        if (label[c] >= 0 && hasCause[c]) isCaused[static_cast<std::size_t>(label[c])] = true;
+    for (std::size_t c = 0; c < label.size(); ++c)
+        if (label[c] >= 0 && !isCaused[static_cast<std::size_t>(label[c])]) return fmt::format("cell {} of the array, and {} missing beside it", c, std::ranges::count(label, label[c]) - 1);
+    return "";
+}
+
 double leastClearance(const CellGrid& grid, const KeptCells& kept, const SurfaceIndex& index) {
     const Vertices vertices(grid, kept);
     double least = std::numeric_limits<double>::infinity();

@@ -21,6 +21,9 @@ double leastClearance(const CellGrid& grid, const KeptCells& kept, const Surface
 // kept cell that it shares a face with.
 std::string wallBetweenKept(const CellGrid& grid, const CutCells& cut, const KeptCells& kept, const SurfaceIndex& index);
 
+// "" or where cells that no geometry meets are missing amid kept ones: a wall without a cause.
+std::string voidInFlow(const CellGrid& grid, const CutCells& cut, const Regions& regions, const KeptCells& kept);
+
 // The Cartesian stages up to paint.
 struct Painted {
     explicit Painted(const RandomCase& c);

@@ -1,16 +1,18 @@
 #include "i2b/carve/carve.h"
 #include "i2b/carve/extrudable.h"
 #include "i2b/carve/gaps.h"
+#include "i2b/carve/islands.h"
 #include "i2b/carve/passages.h"
 #include "i2b/core/checksum.h"
 #include "i2b/core/error.h"
 #include "i2b/grid/ranked_mask.h"
-#include "i2b/paint/paint.h"
 #include <algorithm>
 #include <fmt/format.h>
 
 namespace i2b {
 namespace {
+
+constexpr std::uint64_t leastLeftOut = 64; // cells: smaller parts that are left out are ends of grooves and the like
 
 // Every place asks for cells to go; the list is the same whatever the threads did.
 template <class Ask>
@@ -59,23 +61,10 @@ std::vector<Place> tooClose(const CellGrid& grid, const CutCells& cut, const std
     });
 }
 
-// Keeps the largest connected part of each kept region; gives the number of cells dropped.
-std::uint64_t dropIslands(std::vector<Mask::Ptr>& kept, const CellGrid& grid) {
-    CutCells closed;
-    for (std::size_t l = 0; l < kept.size(); ++l) closed.levels.push_back(differenceOf(*grid.levels[l].cells, *kept[l]));
-    const Regions pieces = labelRegions(grid, closed);
-    if (pieces.table.size() < 2) return 0;
-    const auto best = std::max_element(pieces.table.begin(), pieces.table.end(),
-                                       [](const Region& a, const Region& b) { return a.volume < b.volume; });
-    std::uint64_t dropped = 0;
-    for (const Region& r : pieces.table) dropped += r.id == best->id ? 0 : r.cells;
-    kept = pieces.cellsOf(best->id);
-    return dropped;
-}
-
 struct Carved {
     std::vector<Mask::Ptr> cells;
     std::uint64_t clearance = 0, given = 0, front = 0, islands = 0;
+    std::vector<Region> leftOut;
 };
 
 void give(std::vector<Mask::Ptr>& kept, const std::vector<Place>& cells) {
@@ -90,13 +79,15 @@ Carved carveRegion(const CellGrid& grid, const CutCells& cut, const Regions& reg
     const std::vector<Place> close = tooClose(grid, cut, result.cells, index, options.clearance);
     removeCells(result.cells, close);
     result.clearance = close.size();
-    result.islands = dropIslands(result.cells, grid);
+    Islands islands(result.cells, grid);
     if (options.passages) {
         const Room room(grid, cut, regions, region, result.cells, taken, index);
-        const std::vector<Place> inPassages = passageCells(room);
+        std::vector<Place> inPassages = passageCells(room);
+        while (islands.bringBack(result.cells, inPassages)) inPassages = passageCells(room);
         give(result.cells, inPassages);
         const std::vector<Place> inGaps = gapCells(room);
         give(result.cells, inGaps);
+        islands.bringBack(result.cells, inGaps);
         const ShapingSummary shaped = makeExtrudable(result.cells, grid, index, &room);
         result.given = inPassages.size() + inGaps.size() + shaped.added;
         result.front = shaped.removed;
@@ -104,7 +95,9 @@ Carved carveRegion(const CellGrid& grid, const CutCells& cut, const Regions& reg
         result.front = makeExtrudable(result.cells, grid, index, nullptr).removed;
     }
     for (Mask::Ptr& mask : result.cells) pruneEmptyLeaves(*mask);
-    result.islands += dropIslands(result.cells, grid);
+    const Islands late(result.cells, grid);
+    result.islands = islands.cells() + late.cells();
+    islands.addLargest(result.leftOut, leastLeftOut), late.addLargest(result.leftOut, leastLeftOut);
     if (std::all_of(result.cells.begin(), result.cells.end(), [](const Mask::Ptr& m) { return countOf(*m) == 0; })) {
         throw Error(ErrorKind::input, fmt::format("nothing is left of region '{}'", region.name),
                     fmt::format("near ({:g} {:g} {:g})", region.seed.x, region.seed.y, region.seed.z),
@@ -141,6 +134,7 @@ KeptCells carve(const CellGrid& grid, const CutCells& cut, const Regions& region
         kept.givenInPassages += carved.given;
         kept.carvedForFront += carved.front;
         kept.droppedIslands += carved.islands;
+        kept.leftOut.insert(kept.leftOut.end(), carved.leftOut.begin(), carved.leftOut.end());
         kept.zoneNames.push_back(region.name);
         kept.zones.push_back(std::move(carved.cells));
     }

@@ -157,6 +157,9 @@ std::unique_ptr<GridResult> generateGrid(const Options& options, Context& contex
     r.kept = stage(
         context, "carve", [&] { return carve(r.grid, r.cut, r.regions, *r.index, options.fit); },
         [](const KeptCells& k) { return k.cellCount(); });
+    for (const Region& part : r.kept.leftOut)
+        r.notes.messages.push_back(fmt::format("left out: {} cells around ({:g} {:g} {:g}), behind openings too narrow for cells: give a smaller --size there to mesh them",
+                                               part.cells, part.seed.x, part.seed.y, part.seed.z));
     return out;
 }
 
