@@ -12,6 +12,8 @@ class Islands {
   public:
     // Takes all parts but the largest out of kept (by level).
     Islands(std::vector<Mask::Ptr>& kept, const CellGrid& grid);
+    Islands(const Islands&) = delete;
+    Islands& operator=(const Islands&) = delete;
 
     std::uint64_t cells() const { return cells_; } // of those that are out
     void addLargest(std::vector<Region>& to, std::uint64_t least) const; // those that are out, of so many cells
@@ -22,7 +24,7 @@ class Islands {
     std::int32_t islandAt(const Place& cell) const; // -1: none that is out
 
     Regions parts_;
-    std::vector<std::vector<const RegionPiece*>> pieces_; // by level, of the islands, by origin
+    std::vector<std::vector<const RegionPiece*>> pieces_; // by level, those of parts_ that are of islands, by origin
     std::vector<std::uint8_t> isOut_;                     // per part
     std::uint64_t cells_ = 0;
 };
