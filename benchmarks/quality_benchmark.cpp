@@ -5,8 +5,8 @@
 // The optimiser mends a box, many of whose wall nodes were put in bad places.
 #include "i2b/core/context.h"
 #include "i2b/core/memory.h"
-#include "i2b/repair/optimise.h"
 #include "i2b/quality/quality_report.h"
+#include "i2b/repair/optimise.h"
 #include "i2b/write/atomic_folder.h"
 #include "i2b/write/foam_read.h"
 #include "i2b/write/foam_write.h"

@@ -2,8 +2,8 @@
 // they would be; and the mesh written is closed, without the faces and points that are gone.
 #include "i2b/edit/zip_star.h"
 #include "i2b/assemble/edit_mesh.h"
-#include "i2b/quality/quality_report.h"
 #include "i2b/edit/shape_zip.h"
+#include "i2b/quality/quality_report.h"
 #include "quality/shaken_block.h"
 #include <algorithm>
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // What a single change of cells or faces does for a face beyond a limit: merging cells, as the paper does with poor ones (Wang and
 // Srinivasan 2002, section 4), or dividing a face. Each is judged on a small mesh of its own, by all that a check names.
 #pragma once
-#include "i2b/quality/dictionary_measure.h"
 #include "i2b/edit/local_edits.h"
+#include "i2b/quality/dictionary_measure.h"
 #include <array>
 #include <optional>
 

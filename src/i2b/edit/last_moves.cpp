@@ -1,8 +1,8 @@
 #include "i2b/edit/last_moves.h"
 #include "i2b/core/sort_unique.h"
 #include "i2b/edit/last_resort.h"
-#include "i2b/quality/mesh_geometry.h"
 #include "i2b/edit/shape_zip.h"
+#include "i2b/quality/mesh_geometry.h"
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -1,8 +1,8 @@
 // Moves of columns around a zip (zip_star.h) until the faces of its cells divide into tetrahedra: descent by single columns, a coordinate at
 // a time (a pattern search; Hooke and Jeeves 1961), of the sum of what face_tets.h and others find wanting.
 #pragma once
-#include "i2b/quality/dictionary_limits.h"
 #include "i2b/edit/zip_star.h"
+#include "i2b/quality/dictionary_limits.h"
 
 namespace i2b {
 

@@ -5,6 +5,8 @@
 #include "i2b/core/error.h"
 #include "i2b/core/memory.h"
 #include "i2b/core/parallel.h"
+#include "i2b/edit/last_moves.h"
+#include "i2b/edit/last_resort.h"
 #include "i2b/geometry/features.h"
 #include "i2b/geometry/rims.h"
 #include "i2b/grid/build.h"
@@ -15,8 +17,6 @@
 #include "i2b/program/run_stage.h"
 #include "i2b/program/walls.h"
 #include "i2b/rims/close_rims.h"
-#include "i2b/edit/last_moves.h"
-#include "i2b/edit/last_resort.h"
 #include "i2b/sizing/automatic.h"
 #include "i2b/sizing/estimate.h"
 #include <fmt/format.h>

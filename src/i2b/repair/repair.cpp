@@ -1,10 +1,10 @@
 #include "i2b/repair/repair.h"
 #include "i2b/core/parallel.h"
 #include "i2b/core/sort_unique.h"
-#include "i2b/quality/dictionary_measure.h"
 #include "i2b/edit/last_resort.h"
-#include "i2b/quality/mesh_faults.h"
 #include "i2b/edit/poor_places.h"
+#include "i2b/quality/dictionary_measure.h"
+#include "i2b/quality/mesh_faults.h"
 #include "i2b/repair/retreat.h"
 #include "i2b/repair/step_back.h"
 #include <algorithm>

@@ -2,10 +2,10 @@
 #include "i2b/assemble/edit_mesh.h"
 #include "i2b/core/parallel.h"
 #include "i2b/core/sort_unique.h"
+#include "i2b/edit/zip_star.h"
 #include "i2b/fit/features.h"
 #include "i2b/front/front.h"
 #include "i2b/quality/fit_wall.h"
-#include "i2b/edit/zip_star.h"
 #include "i2b/rims/zip_rims.h"
 #include <algorithm>
 #include <optional>

@@ -1,10 +1,10 @@
 // Everything a run has to tell about itself, as values; report_write.h turns it into report.json.
 #pragma once
 #include "i2b/core/context.h"
+#include "i2b/edit/last_resort.h"
 #include "i2b/layers/layer_report.h"
 #include "i2b/paint/regions.h"
 #include "i2b/quality/fit_report.h"
-#include "i2b/edit/last_resort.h"
 #include "i2b/quality/off_places.h"
 #include "i2b/quality/quality_report.h"
 #include <cstdint>
