@@ -8,11 +8,10 @@
 #include "i2b/grid/ranked_mask.h"
 #include <algorithm>
 #include <fmt/format.h>
+#include <utility>
 
 namespace i2b {
 namespace {
-
-constexpr std::uint64_t leastLeftOut = 64; // cells: smaller parts that are left out are ends of grooves and the like
 
 // Every place asks for cells to go; the list is the same whatever the threads did.
 template <class Ask>
@@ -97,7 +96,7 @@ Carved carveRegion(const CellGrid& grid, const CutCells& cut, const Regions& reg
     for (Mask::Ptr& mask : result.cells) pruneEmptyLeaves(*mask);
     const Islands late(result.cells, grid);
     result.islands = islands.cells() + late.cells();
-    islands.addLargest(result.leftOut, leastLeftOut), late.addLargest(result.leftOut, leastLeftOut);
+    for (const Islands* out : {&std::as_const(islands), &late}) out->addLargest(result.leftOut, RoomOptions{}.pocketCells); // smaller ones are ends of grooves
     if (std::all_of(result.cells.begin(), result.cells.end(), [](const Mask::Ptr& m) { return countOf(*m) == 0; })) {
         throw Error(ErrorKind::input, fmt::format("nothing is left of region '{}'", region.name),
                     fmt::format("near ({:g} {:g} {:g})", region.seed.x, region.seed.y, region.seed.z),

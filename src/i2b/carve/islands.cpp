@@ -36,10 +36,9 @@ void Islands::addLargest(std::vector<Region>& to, std::uint64_t least) const {
 
 std::int32_t Islands::islandAt(const Place& cell) const {
     const std::array<std::int32_t, 3> origin{cell.at[0] & ~7, cell.at[1] & ~7, cell.at[2] & ~7};
-    for (const RegionPiece* piece : std::ranges::equal_range(pieces_[Index(cell.level)], origin, {}, originOf)) {
-        const std::uint64_t plane = piece->mask[Index(cell.at[0] & 7)];
-        if ((plane >> ((cell.at[1] & 7) * 8 + (cell.at[2] & 7)) & 1) != 0) return isOut_[Index(piece->region)] ? piece->region : -1;
-    }
+    const int offset = bits::offset(cell.at[0], cell.at[1], cell.at[2]);
+    for (const RegionPiece* piece : std::ranges::equal_range(pieces_[Index(cell.level)], origin, {}, originOf))
+        if (bits::test(piece->mask, offset)) return isOut_[Index(piece->region)] ? piece->region : -1;
     return -1;
 }
 
@@ -55,9 +54,12 @@ bool Islands::bringBack(std::vector<Mask::Ptr>& kept, const std::vector<Place>& 
         const Index id = Index(part.id);
         if (found[id] == 0) continue;
         isMore = isMore || found[id] < part.cells;
-        const std::vector<Mask::Ptr> back = parts_.cellsOf(part.id);
-        for (Index l = 0; l < kept.size(); ++l) kept[l]->topologyUnion(*back[l]);
         isOut_[id] = 0, cells_ -= part.cells;
+    }
+    for (Index l = 0; l < kept.size(); ++l) {
+        openvdb::tree::ValueAccessor<Mask> write(*kept[l]);
+        for (const RegionPiece* piece : pieces_[l])
+            if (found[Index(piece->region)] > 0) setLeafBitsOn(write, toCoord(piece->origin), piece->mask);
     }
     return isMore;
 }

@@ -17,10 +17,7 @@ std::vector<Mask::Ptr> candidatesOf(const CellGrid& grid, const CutCells& cut, c
         for (const RegionPiece& piece : regions.pieces[l]) {
             const Region& other = regions.table[static_cast<std::size_t>(piece.region)];
             if (other.painted || other.touchesDomainBox || other.cells > pocketCells) continue;
-            MaskLeaf* leaf = write.touchLeaf(toCoord(piece.origin));
-            LeafBits b = leafBits(leaf);
-            for (std::size_t n = 0; n < 8; ++n) b[n] |= piece.mask[n];
-            setLeafBits(*leaf, b);
+            setLeafBitsOn(write, toCoord(piece.origin), piece.mask);
         }
     }
     return candidates;

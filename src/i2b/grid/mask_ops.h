@@ -22,6 +22,12 @@ inline void setLeafBits(MaskLeaf& leaf, const LeafBits& b) {
     for (openvdb::Index n = 0; n < 8; ++n) m.getWord<openvdb::Index64>(n) = b[n];
     leaf.setValueMask(m);
 }
+inline void setLeafBitsOn(openvdb::tree::ValueAccessor<Mask>& write, const openvdb::Coord& origin, const LeafBits& b) {
+    MaskLeaf* leaf = write.touchLeaf(origin);
+    LeafBits all = leafBits(leaf);
+    for (std::size_t n = 0; n < 8; ++n) all[n] |= b[n];
+    setLeafBits(*leaf, all);
+}
 inline openvdb::Coord toCoord(const Index3& c) { return {c[0], c[1], c[2]}; }
 inline Index3 toIndex(const openvdb::Coord& c) { return {c.x(), c.y(), c.z()}; }
 

@@ -324,11 +324,7 @@ std::vector<Mask::Ptr> Regions::cellsOf(std::int32_t region) const {
         auto mask = std::make_shared<Mask>(false);
         openvdb::tree::ValueAccessor<Mask> write(*mask);
         for (const RegionPiece& piece : level) {
-            if (piece.region != region) continue;
-            MaskLeaf* leaf = write.touchLeaf(toCoord(piece.origin));
-            LeafBits b = leafBits(leaf);
-            for (std::size_t n = 0; n < 8; ++n) b[n] |= piece.mask[n];
-            setLeafBits(*leaf, b);
+            if (piece.region == region) setLeafBitsOn(write, toCoord(piece.origin), piece.mask);
         }
         masks.push_back(mask);
     }

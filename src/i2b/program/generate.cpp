@@ -71,6 +71,16 @@ void addGapsInFlow(SizeField& field, const Surface& surface, const SurfaceIndex&
     addGaps(field, inFlow, options.size);
 }
 
+// One note, however many parts.
+void noteLeftOut(const std::vector<Region>& parts, std::vector<std::string>& notes) {
+    if (parts.empty()) return;
+    std::uint64_t cells = 0;
+    for (const Region& part : parts) cells += part.cells;
+    const Region& largest = *std::ranges::max_element(parts, {}, &Region::cells);
+    notes.push_back(fmt::format("left out behind openings too narrow for cells: {} cells in {} place{}, the largest at ({:g} {:g} {:g}): give a smaller --size there to mesh them",
+                                cells, parts.size(), parts.size() > 1 ? "s" : "", largest.seed.x, largest.seed.y, largest.seed.z));
+}
+
 // places: ascending.
 template <class T>
 void dropPlaces(std::vector<T>& values, const std::vector<std::int32_t>& places) {
@@ -157,9 +167,7 @@ std::unique_ptr<GridResult> generateGrid(const Options& options, Context& contex
     r.kept = stage(
         context, "carve", [&] { return carve(r.grid, r.cut, r.regions, *r.index, options.fit); },
         [](const KeptCells& k) { return k.cellCount(); });
-    for (const Region& part : r.kept.leftOut)
-        r.notes.messages.push_back(fmt::format("left out: {} cells around ({:g} {:g} {:g}), behind openings too narrow for cells: give a smaller --size there to mesh them",
-                                               part.cells, part.seed.x, part.seed.y, part.seed.z));
+    noteLeftOut(r.kept.leftOut, r.notes.messages);
     return out;
 }
 
