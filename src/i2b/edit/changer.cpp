@@ -60,6 +60,15 @@ bool isBetter(const Verdict& now, const Verdict& before) {
     return now.faces < before.faces && now.concave <= before.concave + mostConcave;
 }
 
+bool isNoWorse(const Verdict& now, const Verdict& was, const DictionaryLimits& limits) {
+    for (Index i = 0; i < now.counts.size(); ++i)
+        if (now.counts[i] > was.counts[i]) return false;
+    const DictionaryBounds bounds(limits);
+    if (now.nonOrthogonality > std::max(was.nonOrthogonality, 0.9923 * limits.nonOrthogonality)) return false;
+    if (now.skewness > std::max(was.skewness, 0.95 * std::min(bounds.internalSkewness, bounds.boundarySkewness))) return false;
+    return now.faces <= was.faces && now.concave <= was.concave;
+}
+
 LocalEdits::Trial still(std::int32_t a, std::int32_t b) {
     if (a == b) return {{a}};
     return {{std::min(a, b), std::max(a, b)}};

@@ -21,6 +21,8 @@ Verdict judge(const LocalEdits::Surroundings& around, const DictionaryLimits& di
 bool anyBeyond(LocalEdits::Surroundings around, const DictionaryLimits& dictionary);
 // Fewer faces beyond limits, and nothing else worse?
 bool isBetter(const Verdict& now, const Verdict& before);
+// Nothing that a check names worse, and the worst faces as far within the limits as repair leaves others, or no nearer to them than before?
+bool isNoWorse(const Verdict& now, const Verdict& was, const DictionaryLimits& limits);
 bool hasNoMoreTwice(const PolyMesh& now, const PolyMesh& before); // faces: asked where all else is better, for it takes as long
 
 // Two groups, or one, as they are.

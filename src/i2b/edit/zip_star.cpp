@@ -1,7 +1,7 @@
 #include "i2b/edit/zip_star.h"
-#include "i2b/core/numbering.h"
 #include "i2b/core/parallel.h"
 #include "i2b/core/sort_unique.h"
+#include "i2b/edit/small_mesh.h"
 #include "i2b/quality/dictionary_measure.h"
 #include <algorithm>
 
@@ -195,72 +195,30 @@ LocalEdits::Surroundings ZipStar::around(const std::vector<std::int32_t>& cells,
 LocalEdits::Surroundings ZipStar::around(State state, const PointMove& move, const std::vector<std::int32_t>& star, std::vector<std::int32_t>* ids) const {
     const std::vector<std::int32_t> inner = withMembers(star);
     const auto nowOfCell = [&](std::int32_t cell) { return state == State::now ? cellNow(cell) : cell; };
-    Numbering cells, points;
-    std::vector<std::int32_t> faces, loop, loops; // of faces, one after the other
+    SmallMesh small;
+    std::vector<std::int32_t> faces, loop;
+    for (const std::int32_t c : inner) small.addCell(nowOfCell(c), true);
     for (const std::int32_t c : withMembers(withNeighbours(inner))) {
-        cells.add(nowOfCell(c));
+        small.addCell(nowOfCell(c), false);
         faces.insert(faces.end(), cellFaces_[c].begin(), cellFaces_[c].end());
     }
-    cells.close();
     sortUnique(faces);
-    struct Sides {
-        std::int32_t owner, neighbour;
-        Index begin, end; // in loops
-    };
-    std::vector<Sides> sides;
     for (const std::int32_t f : faces) {
-        const std::int32_t own = cells.placeOf(nowOfCell(mesh_.owner[Index(f)]));
-        const std::int32_t next = f < mesh_.internalFaces() ? cells.placeOf(nowOfCell(mesh_.neighbour[Index(f)])) : -1;
+        const std::int32_t own = nowOfCell(mesh_.owner[Index(f)]), next = f < mesh_.internalFaces() ? nowOfCell(mesh_.neighbour[Index(f)]) : -1;
         if (own == next) continue;
         loopOf(f, state, move, loop);
-        if (loop.size() < 3) continue;
-        sides.push_back({own, next, loops.size(), loops.size() + loop.size()});
-        loops.insert(loops.end(), loop.begin(), loop.end());
-        std::ranges::for_each(loop, [&](std::int32_t p) { points.add(p); });
+        if (loop.size() >= 3) small.addFace(loop, own, next);
     }
-    points.close();
-    if (ids) *ids = points.items();
-    LocalEdits::Surroundings result;
-    PolyMesh& mesh = result.mesh;
-    mesh.cells = static_cast<std::int32_t>(cells.items().size());
-    result.outerCells.assign(cells.items().size(), 1);
-    for (const std::int32_t c : inner) result.outerCells[Index(cells.placeOf(nowOfCell(c)))] = 0;
     const auto placeOf = [&](std::int32_t p) {
         const auto at = state == State::first ? first_.find(p) : first_.end();
         return p == move.keep ? move.to : at != first_.end() ? at->second : mesh_.points[Index(p)];
     };
-    for (const std::int32_t p : points.items()) mesh.points.push_back(placeOf(p));
-    mesh.faceOffsets.push_back(0);
-    const auto isOuter = [&](std::int32_t cell) { return cell < 0 || result.outerCells[Index(cell)] != 0; };
-    for (const bool internal : {true, false}) {
-        for (const auto& [own, next, begin, end] : sides) {
-            if ((own >= 0 && next >= 0) != internal) continue;
-            if (own < 0 || (internal && own > next)) std::reverse(loops.begin() + std::ptrdiff_t(begin) + 1, loops.begin() + std::ptrdiff_t(end));
-            for (Index i = begin; i < end; ++i) mesh.faceVertices.push_back(points.placeOf(loops[i]));
-            mesh.faceOffsets.push_back(static_cast<std::uint32_t>(mesh.faceVertices.size()));
-            mesh.owner.push_back(internal ? std::min(own, next) : std::max(own, next));
-            if (internal) mesh.neighbour.push_back(std::max(own, next));
-            result.outerFaces.push_back(isOuter(own) && isOuter(next));
-        }
-    }
-    mesh.patches = {{"rest", "patch", mesh.internalFaces(), mesh.faces() - mesh.internalFaces()}};
-    return result;
-}
-
-bool ZipStar::isNoWorse(const Verdict& was, const LocalEdits::Surroundings& after, const DictionaryLimits& limits) const {
-    const Verdict now = judge(after, limits);
-    for (Index i = 0; i < now.counts.size(); ++i)
-        if (now.counts[i] > was.counts[i]) return false;
-    // Of faces within the limits the worst stay as far within them as repair leaves others.
-    const DictionaryBounds bounds(limits);
-    if (now.nonOrthogonality > std::max(was.nonOrthogonality, 0.9923 * limits.nonOrthogonality)) return false;
-    if (now.skewness > std::max(was.skewness, 0.95 * std::min(bounds.internalSkewness, bounds.boundarySkewness))) return false;
-    return now.faces <= was.faces && now.concave <= was.concave;
+    return small.build(placeOf, ids);
 }
 
 bool ZipStar::isNoWorse(const PointMove& move, const std::vector<std::int32_t>& star, const DictionaryLimits& limits) const {
     const LocalEdits::Surroundings before = around(State::first, {}, star), after = around(State::now, move, star);
-    return isNoWorse(judge(before, limits), after, limits) && hasNoMoreTwice(after.mesh, before.mesh);
+    return i2b::isNoWorse(judge(after, limits), judge(before, limits), limits) && hasNoMoreTwice(after.mesh, before.mesh);
 }
 
 Verdict ZipStar::before(const Zip& zip, const DictionaryLimits& limits) const {
@@ -273,7 +231,7 @@ Verdict ZipStar::now(const Zip& zip, const DictionaryLimits& limits) const { ret
 
 bool ZipStar::isNoWorse(const Zip& zip, const Verdict& before, const DictionaryLimits& limits) const {
     const LocalEdits::Surroundings after = around(State::now, {}, zip.star);
-    return isNoWorse(before, after, limits) && hasNoMoreTwice(after.mesh, around(State::first, {}, zip.star).mesh);
+    return i2b::isNoWorse(judge(after, limits), before, limits) && hasNoMoreTwice(after.mesh, around(State::first, {}, zip.star).mesh);
 }
 
 void ZipStar::apply(const PointMove& move) {

@@ -81,7 +81,6 @@ class ZipStar {
     bool isWall(std::int32_t face) const;
     LocalEdits::Surroundings around(State state, const PointMove& move, const std::vector<std::int32_t>& star, std::vector<std::int32_t>* ids = nullptr) const;
     void loopOf(std::int32_t face, State state, const PointMove& move, std::vector<std::int32_t>& loop) const;
-    bool isNoWorse(const Verdict& was, const LocalEdits::Surroundings& after, const DictionaryLimits& limits) const;
 
     PolyMesh& mesh_;
     const Rows& cellFaces_;

@@ -1,6 +1,7 @@
 #include "i2b/rims/rim_zips.h"
 #include "i2b/core/parallel.h"
 #include "i2b/core/sort_unique.h"
+#include "i2b/edit/layer_column.h"
 #include "i2b/fit/features.h"
 #include "i2b/quality/fit_wall.h"
 #include "i2b/rims/rim_rows.h"
@@ -12,14 +13,9 @@ namespace i2b {
 namespace {
 
 using Index = std::size_t;
-using Loop = std::vector<std::int32_t>;
+using Column = LayerColumn;
+using Loop = Column::Loop;
 constexpr Index mostFaces = 6; // of a group
-
-// The cells over a wall face, from the wall on, and their points over each of its own.
-struct Column {
-    std::vector<std::int32_t> cells;
-    std::vector<Loop> levels; // one more: the last on the front
-};
 
 class ZipFinder {
   public:
@@ -31,7 +27,7 @@ class ZipFinder {
     const Vec3& at(std::int32_t point) const { return mesh_.points[Index(point)]; }
     const RimRows::Node& node(std::int32_t point) const { return rows_.nodes[nodePlace(wall_, point)]; }
     std::vector<std::vector<Index>> groups() const;
-    std::optional<Column> columnOf(Index face) const;
+    std::optional<Column> columnOf(Index face) const { return layerColumn(mesh_, cellFaces_, wall_.faces[face], firstLayerCell_); }
     std::optional<Zip> zipOf(const std::vector<Index>& faces) const;
     std::optional<Loop> outlineOf(const std::vector<Loop>& loops) const;
     std::map<std::int32_t, std::int32_t> joinedOf(const Loop& outline) const;
@@ -70,42 +66,6 @@ std::vector<std::vector<Index>> ZipFinder::groups() const {
         all.push_back(std::move(group));
     }
     return all;
-}
-
-std::optional<Column> ZipFinder::columnOf(Index face) const {
-    std::int32_t base = wall_.faces[face], cell = mesh_.owner[Index(base)];
-    const auto first = mesh_.face(base);
-    Column column{{}, {Loop(first.begin(), first.end())}};
-    while (cell >= firstLayerCell_) {
-        const Loop& below = column.levels.back();
-        const auto isBelow = [&](std::int32_t p) { return std::ranges::find(below, p) != below.end(); };
-        std::int32_t top = -1;
-        std::map<std::int32_t, std::int32_t> up;
-        for (const std::int32_t f : cellFaces_[cell]) {
-            if (f == base) continue;
-            const auto v = mesh_.face(f);
-            if (std::ranges::none_of(v, isBelow)) {
-                if (top >= 0) return {};
-                top = f;
-                continue;
-            }
-            for (Index i = 0; i < v.size(); ++i) {
-                const std::int32_t a = v[i], b = v[(i + 1) % v.size()];
-                if (isBelow(a) && !isBelow(b)) up[a] = b;
-                if (isBelow(b) && !isBelow(a)) up[b] = a;
-            }
-        }
-        if (top < 0 || top >= mesh_.internalFaces() || up.size() != below.size() || mesh_.face(top).size() != below.size()) return {};
-        Loop level;
-        for (const std::int32_t p : below) level.push_back(up.at(p));
-        for (const std::int32_t p : mesh_.face(top))
-            if (std::ranges::find(level, p) == level.end()) return {};
-        column.cells.push_back(cell);
-        column.levels.push_back(std::move(level));
-        cell = mesh_.owner[Index(top)] == cell ? mesh_.neighbour[Index(top)] : mesh_.owner[Index(top)];
-        base = top;
-    }
-    return column.cells.empty() ? std::nullopt : std::optional(std::move(column));
 }
 
 // Of faces that hang together, all in the same sense: what is around them; none where that is more than one loop.
