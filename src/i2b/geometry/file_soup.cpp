@@ -54,6 +54,35 @@ TriangleKind kindOf(const Vec3& a, const Vec3& b, const Vec3& c) {
     return norm2(cross(u, v)) <= 1e-24 * longest * longest ? TriangleKind::zeroArea : TriangleKind::good;
 }
 
+void keepUsedPoints(std::vector<Vec3>& points, Surface& s) {
+    const auto usable = [&](std::uint32_t v) {
+        return kindOf(points[v], points[v], points[v]) != TriangleKind::notNumber;
+    };
+    std::erase_if(s.segments, [&](const FreeSegment& f) { return !usable(f.a) || !usable(f.b); });
+    std::erase_if(s.freePoints, [&](std::uint32_t v) { return !usable(v); });
+    constexpr std::uint32_t unused = ~std::uint32_t{0};
+    std::vector<std::uint32_t> number(points.size(), unused);
+    for (const auto& t : s.triangles)
+        for (const std::uint32_t v : t) number[v] = 0;
+    for (const FreeSegment& f : s.segments) number[f.a] = number[f.b] = 0;
+    for (const std::uint32_t v : s.freePoints) number[v] = 0;
+    std::uint32_t next = 0;
+    for (std::size_t p = 0; p < points.size(); ++p)
+        if (number[p] != unused) {
+            points[next] = points[p];
+            number[p] = next++;
+        }
+    if (next != points.size()) {
+        points.resize(next);
+        parallelFor(s.triangles.size(), [&](std::size_t t) {
+            for (std::uint32_t& v : s.triangles[t]) v = number[v];
+        });
+        for (FreeSegment& f : s.segments) f.a = number[f.a], f.b = number[f.b];
+        for (std::uint32_t& v : s.freePoints) v = number[v];
+    }
+    s.points = std::move(points);
+}
+
 FileSoup joinPieces(const MappedFile& file, std::vector<StlPiece>& pieces) {
     FileSoup soup;
     const std::vector<std::vector<Run>> runs = layRuns(file, pieces, soup);

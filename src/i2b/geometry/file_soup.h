@@ -41,12 +41,18 @@ TriangleKind kindOf(const Vec3& a, const Vec3& b, const Vec3& c);
 FileSoup readStlBinary(const MappedFile& file, double scale);
 FileSoup readStlAscii(const MappedFile& file, double scale);
 FileSoup readObj(const MappedFile& file, double scale);
+FileSoup readNastran(const MappedFile& file, double scale);
 
 // Concatenates pieces in order, gives triangles their part and welds. Frees the pieces as it goes.
 FileSoup joinPieces(const MappedFile& file, std::vector<StlPiece>& pieces);
 
+// Gives the surface those of the points that it uses. Others would count in checks and take memory, and only among them can there be NaN.
+// Segments and free points that are no numbers go with them.
+void keepUsedPoints(std::vector<Vec3>& points, Surface& surface);
+
 bool looksLikeAsciiStl(std::string_view bytes);
 bool looksLikeBinaryStl(std::string_view bytes); // the header's count fits the size exactly
 bool looksLikeObj(std::string_view bytes);
+bool looksLikeNastran(std::string_view bytes);
 
 } // namespace i2b

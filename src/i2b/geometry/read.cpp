@@ -36,13 +36,14 @@ FileSoup readByContent(const MappedFile& file, double scale) {
     if (looksLikeBinaryStl(bytes)) return readStlBinary(file, scale);
     if (looksLikeAsciiStl(bytes)) return readStlAscii(file, scale);
     if (looksLikeObj(bytes)) return readObj(file, scale);
+    if (looksLikeNastran(bytes)) return readNastran(file, scale);
     const bool stlName = extension == ".stl" || extension == ".stlb";
     if (stlName && !isText(bytes)) return readStlBinary(file, scale);
     if (extension == ".obj" && isText(bytes))
         throw Error(ErrorKind::input, "the OBJ file has no statement that makes geometry", file.path(),
                     "export it again");
-    throw Error(ErrorKind::input, fmt::format("the file ({} bytes) is neither STL nor OBJ", bytes.size()),
-                file.path(), "export the geometry as STL or OBJ");
+    throw Error(ErrorKind::input, fmt::format("the file ({} bytes) is neither STL, OBJ nor Nastran", bytes.size()),
+                file.path(), "export the geometry as STL, OBJ or Nastran shells");
 }
 
 FileSoup readFile(const std::string& path, double scale) {

@@ -1,5 +1,5 @@
-// Reading of geometry files into one Surface: STL (ASCII and binary) and Wavefront OBJ, plain or gzipped,
-// told apart by their content. Files are memory-mapped and read on all cores; the result is the same on any
+// Reading of geometry files into one Surface: STL (ASCII and binary), Wavefront OBJ and Nastran bulk data, plain or
+// gzipped, told apart by their content. Files are memory-mapped and read on all cores; the result is the same on any
 // number of threads.
 #pragma once
 #include "i2b/geometry/surface.h"
@@ -20,9 +20,10 @@ struct GeometryNotes {
     std::vector<std::string> messages; // one sentence each, in the order of the files
 };
 
-// files: at least one. scale: file unit to metres, finite and positive. STL solids, OBJ groups and objects
-// are parts; a nameless one takes its file's name. Equal STL points of one part become one; OBJ points stay
-// as indexed, less the unused. OBJ `l` gives segments, `p` free points, polygons a fan of triangles. Throws
+// files: at least one. scale: file unit to metres, finite and positive. STL solids, OBJ groups and objects and
+// Nastran properties are parts; a nameless one takes its file's name. Equal STL points of one part become one; OBJ points stay
+// as indexed, less the unused. OBJ `l` gives segments, `p` free points, polygons a fan of triangles. Nastran's
+// quadrangles are cut along the shorter diagonal; its other elements are left out, with a note. Throws
 // Error (input) with one sentence: missing, unreadable, empty, a folder, no geometry, truncated, without
 // triangles; of several bad files the first is named.
 Surface readSurface(const std::vector<std::string>& files, double scale, GeometryNotes& notes);

@@ -16,7 +16,7 @@ namespace i2b {
 namespace {
 
 constexpr std::size_t pieceBytes = std::size_t{1} << 20;
-constexpr std::uint32_t unused = ~std::uint32_t{0};
+constexpr std::size_t mostPoints = ~std::uint32_t{0};
 
 // True unless the line before goes on behind a backslash.
 bool canStart(std::string_view bytes, std::size_t at) {
@@ -71,7 +71,7 @@ void readPieces(ObjFile& obj, double scale) {
         obj.firstPoint.push_back(piece.points.size());
     }
     const std::size_t points = exclusiveScan(obj.firstPoint);
-    if (points >= unused) obj.refuse("the file has more points than 32 bits count");
+    if (points >= mostPoints) obj.refuse("the file has more points than 32 bits count");
     obj.points.resize(points);
     parallelFor(
         obj.pieces.size(),
@@ -254,36 +254,6 @@ void fill(ObjFile& obj, const std::vector<std::vector<Run>>& runs, Surface& s) {
                 s.freePoints[firstFree[i] + p] = narrow(piece.freePoints[p]);
         },
         1);
-}
-
-// Points that nothing uses would count in checks and take memory, and only among them can there be NaN.
-// Segments and free points that are no numbers go with them.
-void keepUsedPoints(std::vector<Vec3>& points, Surface& s) {
-    const auto usable = [&](std::uint32_t v) {
-        return kindOf(points[v], points[v], points[v]) != TriangleKind::notNumber;
-    };
-    std::erase_if(s.segments, [&](const FreeSegment& f) { return !usable(f.a) || !usable(f.b); });
-    std::erase_if(s.freePoints, [&](std::uint32_t v) { return !usable(v); });
-    std::vector<std::uint32_t> number(points.size(), unused);
-    for (const auto& t : s.triangles)
-        for (const std::uint32_t v : t) number[v] = 0;
-    for (const FreeSegment& f : s.segments) number[f.a] = number[f.b] = 0;
-    for (const std::uint32_t v : s.freePoints) number[v] = 0;
-    std::uint32_t next = 0;
-    for (std::size_t p = 0; p < points.size(); ++p)
-        if (number[p] != unused) {
-            points[next] = points[p];
-            number[p] = next++;
-        }
-    if (next != points.size()) {
-        points.resize(next);
-        parallelFor(s.triangles.size(), [&](std::size_t t) {
-            for (std::uint32_t& v : s.triangles[t]) v = number[v];
-        });
-        for (FreeSegment& f : s.segments) f.a = number[f.a], f.b = number[f.b];
-        for (std::uint32_t& v : s.freePoints) v = number[v];
-    }
-    s.points = std::move(points);
 }
 
 } // namespace
