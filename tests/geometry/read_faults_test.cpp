@@ -33,9 +33,9 @@ TEST(ReadFaults, OneSentenceEach) {
     is(folder.path(""), "is a folder");
     is(folder.write("empty.stl", ""), "is empty");
     is("/dev/null", "not a regular file");
-    is(folder.write("text.stl", "This is no geometry at all.\n"), "neither STL, OBJ nor Nastran");
+    is(folder.write("text.stl", "This is no geometry at all.\n"), "neither STL, OBJ, PLY nor Nastran");
     is(folder.write("picture.png", std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16) + std::string(500, '\7')),
-       "neither STL, OBJ nor Nastran");
+       "neither STL, OBJ, PLY nor Nastran");
     is(folder.write("none.stl", "solid none\nendsolid none\n"), "no triangles");
     is(folder.write("none2.stl", binaryStl({}, std::string("b\0", 2))), "no triangles");
     is(folder.write("point.stl", binaryStl({Corners{}})), "no usable triangles, 1 were left out");

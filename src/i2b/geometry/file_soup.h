@@ -42,6 +42,7 @@ FileSoup readStlBinary(const MappedFile& file, double scale);
 FileSoup readStlAscii(const MappedFile& file, double scale);
 FileSoup readObj(const MappedFile& file, double scale);
 FileSoup readNastran(const MappedFile& file, double scale);
+FileSoup readPly(const MappedFile& file, double scale);
 
 // Concatenates pieces in order, gives triangles their part and welds. Frees the pieces as it goes.
 FileSoup joinPieces(const MappedFile& file, std::vector<StlPiece>& pieces);
@@ -54,5 +55,6 @@ bool looksLikeAsciiStl(std::string_view bytes);
 bool looksLikeBinaryStl(std::string_view bytes); // the header's count fits the size exactly
 bool looksLikeObj(std::string_view bytes);
 bool looksLikeNastran(std::string_view bytes);
+bool looksLikePly(std::string_view bytes);
 
 } // namespace i2b

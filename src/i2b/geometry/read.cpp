@@ -33,6 +33,7 @@ bool isText(std::string_view bytes) {
 FileSoup readByContent(const MappedFile& file, double scale) {
     const std::string_view bytes = file.bytes();
     const std::string extension = extensionOf(file.path());
+    if (looksLikePly(bytes)) return readPly(file, scale);
     if (looksLikeBinaryStl(bytes)) return readStlBinary(file, scale);
     if (looksLikeAsciiStl(bytes)) return readStlAscii(file, scale);
     if (looksLikeObj(bytes)) return readObj(file, scale);
@@ -42,8 +43,8 @@ FileSoup readByContent(const MappedFile& file, double scale) {
     if (extension == ".obj" && isText(bytes))
         throw Error(ErrorKind::input, "the OBJ file has no statement that makes geometry", file.path(),
                     "export it again");
-    throw Error(ErrorKind::input, fmt::format("the file ({} bytes) is neither STL, OBJ nor Nastran", bytes.size()),
-                file.path(), "export the geometry as STL, OBJ or Nastran shells");
+    throw Error(ErrorKind::input, fmt::format("the file ({} bytes) is neither STL, OBJ, PLY nor Nastran", bytes.size()),
+                file.path(), "export the geometry as STL, OBJ, PLY or Nastran shells");
 }
 
 FileSoup readFile(const std::string& path, double scale) {

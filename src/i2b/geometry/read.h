@@ -1,5 +1,5 @@
-// Reading of geometry files into one Surface: STL (ASCII and binary), Wavefront OBJ and Nastran bulk data, plain or
-// gzipped, told apart by their content. Files are memory-mapped and read on all cores; the result is the same on any
+// Reading of geometry files into one Surface: STL (ASCII and binary), Wavefront OBJ, PLY and Nastran bulk data, plain
+// or gzipped, told apart by their content. Files are memory-mapped and read on all cores; the result is the same on any
 // number of threads.
 #pragma once
 #include "i2b/geometry/surface.h"

@@ -85,6 +85,7 @@ void sortPoints(Deck& deck) {
     const auto key = [](const Piece::Grid& g) { return std::tuple(g.id, g.place.x, g.place.y, g.place.z); };
     const auto before = [&](const Piece::Grid& a, const Piece::Grid& b) { return key(a) < key(b); };
     if (!std::is_sorted(grids.begin(), grids.end(), before)) tbb::parallel_sort(grids.begin(), grids.end(), before);
+    deck.ids.reserve(grids.size()), deck.points.reserve(grids.size());
     for (const Piece::Grid& g : grids) {
         if (!deck.ids.empty() && deck.ids.back() == g.id) {
             if (!(deck.points.back() == g.place)) deck.refuse(fmt::format("GRID {} is there twice, at different places", g.id));
