@@ -159,13 +159,25 @@ std::optional<LocalEdits::Trial> Changer::unite(std::int32_t a, std::int32_t b) 
 
 std::optional<LocalEdits::Trial> Changer::uniteAll(std::vector<std::int32_t> groups) const {
     std::sort(groups.begin(), groups.end());
-    const Trial trial{std::move(groups), true};
-    const LocalEdits::Surroundings was = edits_.around({trial.groups});
+    Trial trial{std::move(groups), true};
+    const auto at = tried_.find(trial.groups);
+    const bool does = at != tried_.end() ? at->second : helps(trial);
+    if (at == tried_.end()) tried_.emplace(trial.groups, does);
+    return does ? std::optional(std::move(trial)) : std::nullopt;
+}
+
+bool Changer::helps(const Trial& united) const {
+    const LocalEdits::Surroundings was = edits_.around({united.groups});
     const Verdict before = judge(was, limits_);
-    if (before.faces == 0) return {};
-    const LocalEdits::Surroundings now = edits_.around(trial);
-    if (isBetter(judge(now, limits_), before) && hasNoMoreTwice(now.mesh, was.mesh)) return trial;
-    return {};
+    if (before.faces == 0) return false;
+    const LocalEdits::Surroundings now = edits_.around(united);
+    return isBetter(judge(now, limits_), before) && hasNoMoreTwice(now.mesh, was.mesh);
+}
+
+std::size_t Changer::HashGroups::operator()(const std::vector<std::int32_t>& groups) const {
+    std::size_t sum = groups.size();
+    for (const std::int32_t g : groups) sum = sum * 0x9e3779b97f4a7c15u + static_cast<std::size_t>(g);
+    return sum ^ sum >> 32;
 }
 
 // The layers of the column that a thin group is of, from one end to the other: each meets the next ones only.

@@ -5,6 +5,8 @@
 #include "i2b/quality/dictionary_measure.h"
 #include <array>
 #include <optional>
+#include <tbb/concurrent_unordered_map.h>
+#include <vector>
 
 namespace i2b {
 
@@ -29,7 +31,7 @@ bool hasNoMoreTwice(const PolyMesh& now, const PolyMesh& before); // faces: aske
 LocalEdits::Trial still(std::int32_t a, std::int32_t b);
 void apply(const LocalEdits::Trial& change, LocalEdits& edits);
 
-// Keeps references.
+// Keeps references; the edits must not change while it is used. Any number of threads may ask.
 class Changer {
   public:
     using Trial = LocalEdits::Trial;
@@ -55,6 +57,7 @@ class Changer {
     Meeting meetingOf(std::int32_t a, std::int32_t b) const;
     std::optional<Trial> unite(std::int32_t a, std::int32_t b) const;
     std::optional<Trial> uniteAll(std::vector<std::int32_t> groups) const;
+    bool helps(const Trial& united) const;
     std::vector<std::int32_t> columnOf(std::int32_t group) const;
     std::optional<Trial> uniteColumn(std::int32_t group) const;
     std::vector<Trial> divisionsOf(std::int32_t face) const;
@@ -64,6 +67,11 @@ class Changer {
     const LocalEdits& edits_;
     const DictionaryLimits& limits_;
     std::int32_t thinFrom_;
+    struct HashGroups {
+        std::size_t operator()(const std::vector<std::int32_t>& groups) const;
+    };
+    // Of groups that were tried as one, whether that helps: faces of one column ask for the same again and again.
+    mutable tbb::concurrent_unordered_map<std::vector<std::int32_t>, bool, HashGroups> tried_;
 };
 
 // Two changes that together help a face that none helps alone: the first is any of its cells', the second what then helps.

@@ -48,11 +48,10 @@ class MeshBuilder {
 
 } // namespace
 
-LocalEdits::LocalEdits(const PolyMesh& mesh, const Rows& cellFaces) : mesh_(mesh), cellFaces_(cellFaces) {}
+LocalEdits::LocalEdits(const PolyMesh& mesh, const Rows& cellFaces) : mesh_(mesh), cellFaces_(cellFaces), isGrouped_(Index(mesh.cells)) {}
 
 LocalEdits::Cells LocalEdits::cells(std::int32_t group) const {
-    const auto at = members_.find(group);
-    return at == members_.end() ? Cells(group) : Cells(at->second);
+    return isGrouped_[Index(group)] ? Cells(members_.at(group)) : Cells(group);
 }
 
 MeshEdits LocalEdits::edits() const {
@@ -67,7 +66,7 @@ void LocalEdits::unite(std::int32_t a, std::int32_t b) {
     const Cells from = cells(b), to = cells(a);
     std::vector<std::int32_t> all(to.begin(), to.end());
     all.insert(all.end(), from.begin(), from.end());
-    for (const std::int32_t c : all) groupOf_[c] = a;
+    for (const std::int32_t c : all) groupOf_[c] = a, isGrouped_[Index(c)] = true;
     members_.erase(b);
     members_[a] = std::move(all);
     ++united_;

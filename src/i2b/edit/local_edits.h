@@ -18,8 +18,7 @@ class LocalEdits {
     LocalEdits(const PolyMesh& mesh, const Rows& cellFaces);
 
     std::int32_t of(std::int32_t cell) const {
-        const auto at = groupOf_.find(cell);
-        return at == groupOf_.end() ? cell : at->second;
+        return isGrouped_[static_cast<std::size_t>(cell)] ? groupOf_.at(cell) : cell;
     }
     class Cells { // of a group: most are of one
       public:
@@ -69,7 +68,8 @@ class LocalEdits {
 
     const PolyMesh& mesh_;
     const Rows& cellFaces_;
-    std::unordered_map<std::int32_t, std::int32_t> groupOf_;                 // of cells in groups of more than one
+    std::vector<bool> isGrouped_;                                            // per cell: is its group one of more than one?
+    std::unordered_map<std::int32_t, std::int32_t> groupOf_;                 // of these
     std::unordered_map<std::int32_t, std::vector<std::int32_t>> members_;    // of groups of more than one
     std::map<std::int32_t, std::uint32_t> divided_;
     std::int64_t united_ = 0;

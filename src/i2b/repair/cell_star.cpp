@@ -31,6 +31,7 @@ bool CellStar::uses(std::int32_t face) const {
     constexpr Index few = 16; // one by one is faster
     const auto v = mesh_.face(face);
     return std::any_of(v.begin(), v.end(), [&](std::int32_t p) {
+        if (p < points_.front() || p > points_.back()) return false; // most
         return points_.size() <= few ? std::find(points_.begin(), points_.end(), p) != points_.end() : std::binary_search(points_.begin(), points_.end(), p);
     });
 }

@@ -40,7 +40,7 @@ std::vector<Optimiser::Task> Optimiser::asTasks(std::vector<std::pair<MeshNode, 
     tbb::parallel_sort(found.begin(), found.end());
     std::vector<Task> tasks;
     for (const auto& [node, cell] : found) {
-        if (tasks.empty() || tasks.back().node != node) tasks.push_back({node, cell, {}, {}});
+        if (tasks.empty() || tasks.back().node != node) tasks.push_back({node, cell});
     }
     return tasks;
 }
@@ -110,37 +110,36 @@ class CellRanks {
 } // namespace
 
 // The cells that a task changes and those beyond their faces, ascending.
-void Optimiser::findCells(Task& task, Worker& worker) const {
-    task.cells = worker.cellsOf(task);
-    task.reads.clear();
-    for (const std::int32_t c : task.cells) {
-        task.reads.push_back(c);
+void Optimiser::findStar(const Task& task, Worker& worker, Star& star) const {
+    star.cells = worker.cellsOf(task);
+    for (const std::int32_t c : star.cells) {
+        star.reads.push_back(c);
         for (const std::int32_t f : cellFaces_[c]) {
-            if (f < mesh_.internalFaces()) task.reads.push_back(mesh_.owner[Index(f)] == c ? mesh_.neighbour[Index(f)] : mesh_.owner[Index(f)]);
+            if (f < mesh_.internalFaces()) star.reads.push_back(mesh_.owner[Index(f)] == c ? mesh_.neighbour[Index(f)] : mesh_.owner[Index(f)]);
         }
     }
-    std::sort(task.reads.begin(), task.reads.end());
-    task.reads.erase(std::unique(task.reads.begin(), task.reads.end()), task.reads.end());
+    sortUnique(star.reads);
+    star.reads.shrink_to_fit();
 }
 
 // Groups of tasks that may go at once: no cell that one changes is read by another. Those beyond 64 colours wait for
 // the next sweep.
 std::vector<std::vector<std::uint32_t>> Optimiser::colour(const std::vector<Task>& tasks) const {
-    const Index reads = std::accumulate(tasks.begin(), tasks.end(), Index(0), [](Index n, const Task& t) { return n + t.reads.size(); });
+    const Index reads = std::accumulate(tasks.begin(), tasks.end(), Index(0), [](Index n, const Task& t) { return n + t.star->reads.size(); });
     CellRanks ranks(mesh_.cells, reads);
     for (const Task& task : tasks)
-        for (const std::int32_t c : task.reads) ranks.add(c);
+        for (const std::int32_t c : task.star->reads) ranks.add(c);
     struct Masks { std::uint64_t read = 0, changed = 0; };
     std::vector<Masks> masks(ranks.count());
     std::vector<std::vector<std::uint32_t>> groups;
     for (Index t = 0; t < tasks.size(); ++t) {
         std::uint64_t taken = 0;
-        for (const std::int32_t c : tasks[t].cells) taken |= masks[ranks.rank(c)].read;
-        for (const std::int32_t c : tasks[t].reads) taken |= masks[ranks.rank(c)].changed;
+        for (const std::int32_t c : tasks[t].star->cells) taken |= masks[ranks.rank(c)].read;
+        for (const std::int32_t c : tasks[t].star->reads) taken |= masks[ranks.rank(c)].changed;
         const int free = std::countr_one(taken);
         if (free == 64) continue;
-        for (const std::int32_t c : tasks[t].cells) masks[ranks.rank(c)].changed |= std::uint64_t(1) << free;
-        for (const std::int32_t c : tasks[t].reads) masks[ranks.rank(c)].read |= std::uint64_t(1) << free;
+        for (const std::int32_t c : tasks[t].star->cells) masks[ranks.rank(c)].changed |= std::uint64_t(1) << free;
+        for (const std::int32_t c : tasks[t].star->reads) masks[ranks.rank(c)].read |= std::uint64_t(1) << free;
         if (groups.size() <= Index(free)) groups.resize(Index(free) + 1);
         groups[Index(free)].push_back(static_cast<std::uint32_t>(t));
     }
@@ -151,9 +150,11 @@ template <class Move>
 std::int64_t Optimiser::sweep(std::vector<Task>& tasks, const Move& move, RestingNodes* resting) {
     tbb::enumerable_thread_specific<Worker> workers([this] { return Worker(*this); });
     std::vector<std::uint8_t> rests(tasks.size(), 0);
+    std::vector<Star*> stars;
+    for (Task& task : tasks) task.star = stars.emplace_back(&stars_[task.node]);
     parallelFor(tasks.size(), [&](Index t) {
-        findCells(tasks[t], workers.local());
-        rests[t] = resting && resting->has(tasks[t].node, tasks[t].reads);
+        if (stars[t]->cells.empty()) findStar(tasks[t], workers.local(), *stars[t]);
+        rests[t] = resting && resting->has(tasks[t].node, tasks[t].star->reads);
     }, 8);
     Index left = 0;
     for (Index t = 0; t < tasks.size(); ++t) {
@@ -176,9 +177,9 @@ std::int64_t Optimiser::sweep(std::vector<Task>& tasks, const Move& move, Restin
             if (resting && !hasMoved[i]) resting->stays(task.node);
             if (!hasMoved[i]) continue;
             ++moves;
-            if (resting) resting->moves(task.cells);
+            if (resting) resting->moves(task.star->cells);
             if (tracked_) tracked_->try_emplace(task.node, from[i]);
-            changed.insert(changed.end(), task.cells.begin(), task.cells.end());
+            changed.insert(changed.end(), task.star->cells.begin(), task.star->cells.end());
         }
         if (resting) resting->next();
         faults_.follow(changed);
@@ -315,7 +316,7 @@ void Optimiser::comeBack(int sweeps, const std::vector<std::int32_t>& butAt) {
     for (const auto& [node, from] : *tracked_) {
         if (node.kind != MeshNode::wall || std::ranges::binary_search(stay, node, {}, &Task::node)) continue;
         places[node.id] = from.to;
-        tasks.push_back({node, from.cell, {}, {}});
+        tasks.push_back({node, from.cell});
     }
     bringBack(std::move(tasks), places, sweeps);
 }
@@ -370,7 +371,7 @@ std::vector<Optimiser::Task> Optimiser::wallTasks(const std::vector<std::uint8_t
     }
     std::vector<Task> tasks;
     for (Index v = 0; v < walls; ++v) {
-        if (cellOf[v] >= 0) tasks.push_back({{MeshNode::wall, static_cast<std::int32_t>(v)}, cellOf[v], {}, {}});
+        if (cellOf[v] >= 0) tasks.push_back({{MeshNode::wall, static_cast<std::int32_t>(v)}, cellOf[v]});
     }
     return tasks;
 }

@@ -66,11 +66,14 @@ class Optimiser {
     std::int64_t pullIn(int sweeps);
 
   private:
+    struct Star {
+        std::vector<std::int32_t> cells;    // all that use a point of the node, ascending
+        std::vector<std::int32_t> reads;    // these and those beyond their faces: what a move is judged by
+    };
     struct Task {
         MeshNode node;
         std::int32_t cell = -1;             // one that uses a point of the node
-        std::vector<std::int32_t> cells;    // all that do, ascending
-        std::vector<std::int32_t> reads;    // these and those beyond their faces: what a move is judged by
+        const Star* star = nullptr;
     };
     struct Worker;
     std::vector<Task> tasksOf(const std::vector<std::int32_t>& cells) const;
@@ -82,7 +85,7 @@ class Optimiser {
     std::vector<Task> tasksOfCellsAt(const std::vector<std::int32_t>& faces) const;
     template <class Move>
     std::int64_t sweep(std::vector<Task>& tasks, const Move& move, RestingNodes* resting = nullptr); // asks none of those, and notes further ones
-    void findCells(Task& task, Worker& worker) const;
+    void findStar(const Task& task, Worker& worker, Star& star) const;
     bool isFree(const MeshNode& node, const Vec3& to) const;
     bool keepsFolds(const MeshNode& node, const Vec3& to) const;
     bool isHeld(const MeshNode& wall) const;
@@ -121,6 +124,7 @@ class Optimiser {
     int layers_;          // cells of the highest stack of thin layers, which share their faults; 1 where there are none
     WallGuide guide_;
     MeshNodes nodes_;
+    std::map<MeshNode, Star> stars_; // of those asked so far: points move, cells stay
     std::optional<std::map<MeshNode, NodeMove>> tracked_; // where they were
     double leastFull_ = 0; // CellStar::countFlat()
 };

@@ -22,7 +22,7 @@ struct Optimiser::Worker {
 
     void begin(const Task& t) {
         hang(t);
-        star.take(points, t.cells);
+        star.take(points, t.star->cells);
     }
     // The cells at all points that hang on the node.
     const std::vector<std::int32_t>& cellsOf(const Task& t) {

@@ -144,6 +144,18 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, L
         isClean();
     }
     optimiser.mendTets(tetSweeps);
+    const auto findFolded = [&] {
+        for (const std::int32_t f : faults.undividedFaces())
+            if (mesh.owner[static_cast<std::size_t>(f)] >= thinFrom) summary.foldedCells.push_back(mesh.owner[static_cast<std::size_t>(f)]);
+    };
+    if (!mayThinLeave) {
+        findFolded();
+        if (!summary.foldedCells.empty() && summary.foldedCells.size() <= mostFolded) {
+            noteMoved();
+            return summary;
+        }
+        summary.foldedCells.clear();
+    }
     const auto facesLeft = [&] {
         std::vector<std::int32_t> undivided = faults.undividedFaces();
         if (!mayThinLeave) std::erase_if(undivided, [&](std::int32_t f) { return mesh.owner[static_cast<std::size_t>(f)] >= thinFrom; });
@@ -163,8 +175,7 @@ RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, L
     isClean();
     summary.poorRemaining = poor.all;
     summary.unmended = faults.poorFaces();
-    for (const std::int32_t f : faults.undividedFaces())
-        if (mesh.owner[static_cast<std::size_t>(f)] >= thinFrom) summary.foldedCells.push_back(mesh.owner[static_cast<std::size_t>(f)]);
+    findFolded();
     noteMoved();
     return summary;
 }
