@@ -9,6 +9,7 @@ namespace i2b {
 namespace {
 
 constexpr int mostCuts = 4;   // rounds of cutting walls under cells that cannot be made valid
+constexpr std::size_t mostFolded = 2000; // thin cells: where more are, their height asks for it
 constexpr int mostTries = 3;  // further ones, without cuts of the fit around such cells
 constexpr int wrongRings = 3; // of cells around them
 

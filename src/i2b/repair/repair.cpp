@@ -56,128 +56,160 @@ std::vector<std::int32_t> thinCellsAt(const PolyMesh& mesh, const std::vector<st
     return cells;
 }
 
+class Repairer {
+  public:
+    Repairer(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, LayerStack& layers, double startThickness, const WallGuide& guide, const DictionaryLimits& limits)
+        : mesh_(mesh), front_(front), lattice_(lattice), layers_(layers), startThickness_(startThickness), limits_(limits), walls_(wallPositions(front)), thin_(layers.areThin()),
+          thinFrom_(!layers.areFlat() ? mesh.cells : mesh.cells - static_cast<std::int32_t>(layers.cells())), cellFaces_(buildCellFaces(mesh)),
+          faults_(mesh, cellFaces_, strictLimits(limits), thinFrom_), optimiser_(mesh, cellFaces_, faults_, front, layers, guide) {}
+    RepairSummary run(bool mayThinLeave);
+
+  private:
+    bool isClean() {
+        faults_.poorCells(poor_);
+        return poor_.all == 0 && faults_.badCells().empty();
+    }
+    void stepBack(RetreatFrom from);
+    void settle();
+    void mendSevere();
+    void mendLastFaces(bool mayThinLeave);
+    void mendFlatCells();
+    std::vector<std::int32_t> foldedCells() const;
+    RepairSummary finish();
+
+    PolyMesh& mesh_;
+    Front& front_;
+    const LatticeMesh& lattice_;
+    LayerStack& layers_;
+    double startThickness_;
+    const DictionaryLimits& limits_;
+    std::vector<Vec3> walls_; // m, where they were
+    bool thin_;               // nodes off the wall do not mend thin layers: it takes whole columns
+    std::int32_t thinFrom_;
+    Rows cellFaces_;
+    MeshFaults faults_;
+    FaultCount poor_;         // when isClean() was last asked
+    Optimiser optimiser_;
+    RepairSummary summary_;
+};
+
+void Repairer::stepBack(RetreatFrom from) {
+    RetreatSummary r = retreatFromFaults(mesh_, cellFaces_, faults_, front_, optimiser_.nodes(), lattice_, layers_, startThickness_, from);
+    summary_.rounds += r.rounds, summary_.retracted += r.retracted;
+    summary_.wrongCells = std::move(r.wrongCells);
+    summary_.remaining = static_cast<std::int64_t>(summary_.wrongCells.size());
+}
+
+// What single moves do not mend steps back; from there they may.
+void Repairer::settle() {
+    constexpr std::int64_t any = std::numeric_limits<std::int64_t>::max();
+    std::int64_t goOnBelow = any; // many faults that stay are given up
+    for (int round = 0; round < settleRounds && !isClean() && (poor_.all < goOnBelow || !faults_.badCells().empty()); ++round) {
+        goOnBelow = poor_.all > manyFaults ? poor_.all / 2 : any;
+        const std::int64_t before = summary_.moves;
+        summary_.moves += optimiser_.mend(thin_ ? thinSweeps : mendSweeps);
+        if (isClean()) return;
+        if (thin_) {
+            for (int i = 0; i < bendRounds && optimiser_.bend() > 0 && !isClean(); ++i) summary_.moves += optimiser_.mend(thinPause);
+            if (isClean()) return;
+            // A retreat makes columns no better: it takes whole regions off the wall.
+            summary_.moves += optimiser_.mend(mendSweeps, true);
+            if (isClean() || (summary_.moves == before && faults_.badCells().empty())) return;
+        }
+        stepBack(thin_ ? RetreatFrom::wrong : RetreatFrom::poor);
+    }
+}
+
+// Rather a few nodes off the wall than a face that spoils the solution.
+void Repairer::mendSevere() {
+    isClean();
+    if (poor_.severe == 0 || poor_.severe > fewFaults) return;
+    if (thin_) stepBack(RetreatFrom::severe);
+    summary_.moves += optimiser_.mend(mendSweeps, !thin_);
+    isClean();
+}
+
+// Faces that nothing else makes divide into tetrahedra. Where many faces are beyond other limits for good, these are not worth as much.
+void Repairer::mendLastFaces(bool mayThinLeave) {
+    isClean();
+    if (poor_.all > fewFaults) return;
+    const auto facesLeft = [&] {
+        std::vector<std::int32_t> undivided = faults_.undividedFaces();
+        if (!mayThinLeave) std::erase_if(undivided, [&](std::int32_t f) { return mesh_.owner[static_cast<std::size_t>(f)] >= thinFrom_; });
+        return undivided.empty() ? undivided : facesBeyondHelp(mesh_, cellFaces_, undivided, limits_, thinFrom_);
+    };
+    std::vector<std::int32_t> left = facesLeft();
+    for (int round = 0; round < offRounds && !left.empty(); ++round) {
+        optimiser_.mendTetsOffWall(left, offSweeps);
+        left = facesLeft();
+    }
+    // What helps one face may be in the way of another's help.
+    for (int round = 0; round < backRounds && !left.empty(); ++round) {
+        if (stepBackFrom(left, {mesh_, cellFaces_, faults_, front_, lattice_, startThickness_, limits_}, optimiser_) == 0) break;
+        left = facesLeft();
+    }
+}
+
 // Determinants go with the height of thin cells: only those under the limit count where few are, and of these only those that the last
 // resort would not help. Undone where that leaves as many of them, faces that do not divide among them.
-void mendFlatCells(const PolyMesh& mesh, const Rows& cellFaces, const MeshFaults& faults, const DictionaryLimits& limits, Optimiser& optimiser) {
-    const std::int32_t thinFrom = faults.thinFrom();
-    if (thinFrom >= mesh.cells || !(DictionaryBounds(limits).determinant > 0)) return;
-    const auto flatFaces = [&] { return facesOfFlatCells(mesh, cellFaces, thinFrom, limits.determinant, mostFlat); };
+void Repairer::mendFlatCells() {
+    if (thinFrom_ >= mesh_.cells || !(DictionaryBounds(limits_).determinant > 0)) return;
+    const auto flatFaces = [&] { return facesOfFlatCells(mesh_, cellFaces_, thinFrom_, limits_.determinant, mostFlat); };
     const auto left = [&](const std::vector<std::int32_t>& flat) {
         std::vector<std::int32_t> all;
-        std::ranges::set_union(flat, faults.undividedFaces(), std::back_inserter(all));
-        return facesBeyondHelp(mesh, cellFaces, all, limits, thinFrom);
+        std::ranges::set_union(flat, faults_.undividedFaces(), std::back_inserter(all));
+        return facesBeyondHelp(mesh_, cellFaces_, all, limits_, thinFrom_);
     };
     const std::vector<std::int32_t> flat = flatFaces();
     const std::vector<std::int32_t> before = flat.empty() ? flat : left(flat);
     if (before.empty() || before.size() > fewFlat) return;
     FaultCount was, now;
-    faults.poorCells(was);
-    optimiser.track();
-    optimiser.mendFlatAt(thinCellsAt(mesh, before, thinFrom), flatSweeps);
-    faults.poorCells(now);
-    if (faults.badCells().empty() && now.all <= was.all && left(flatFaces()).size() < before.size()) optimiser.keep();
-    else optimiser.undo();
+    faults_.poorCells(was);
+    optimiser_.track();
+    optimiser_.mendFlatAt(thinCellsAt(mesh_, before, thinFrom_), flatSweeps);
+    faults_.poorCells(now);
+    if (faults_.badCells().empty() && now.all <= was.all && left(flatFaces()).size() < before.size()) optimiser_.keep();
+    else optimiser_.undo();
+}
+
+std::vector<std::int32_t> Repairer::foldedCells() const {
+    std::vector<std::int32_t> cells;
+    for (const std::int32_t f : faults_.undividedFaces())
+        if (mesh_.owner[static_cast<std::size_t>(f)] >= thinFrom_) cells.push_back(mesh_.owner[static_cast<std::size_t>(f)]);
+    return cells;
+}
+
+RepairSummary Repairer::finish() {
+    isClean();
+    summary_.poorRemaining = poor_.all;
+    for (std::size_t v = 0; v < walls_.size(); ++v) summary_.movedWalls.push_back(!(front_.wall(v) == walls_[v]));
+    summary_.cellFaces = std::move(cellFaces_);
+    return std::move(summary_);
+}
+
+RepairSummary Repairer::run(bool mayThinLeave) {
+    isClean();
+    summary_.badCells = static_cast<std::int64_t>(faults_.badCells().size());
+    summary_.poorFaces = poor_.all;
+    settle();
+    if (summary_.remaining > 0) return finish();
+    summary_.moves += optimiser_.snapWished(wishSweeps);
+    summary_.moves += optimiser_.pullIn(pullSweeps);
+    settle();
+    mendSevere();
+    optimiser_.mendTets(tetSweeps);
+    mendLastFaces(mayThinLeave);
+    mendFlatCells();
+    summary_.foldedCells = foldedCells();
+    summary_.unmended = faults_.poorFaces();
+    return finish();
 }
 
 } // namespace
 
 RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, LayerStack& layers, double startThickness,
                      const WallGuide& guide, const DictionaryLimits& limits, bool mayThinLeave) {
-    RepairSummary summary;
-    summary.cellFaces = buildCellFaces(mesh);
-    const Rows& cellFaces = summary.cellFaces;
-    // Nodes off the wall do not mend thin layers: it takes whole columns.
-    const bool thin = layers.areThin();
-    const std::int32_t thinFrom = !layers.areFlat() ? mesh.cells : mesh.cells - static_cast<std::int32_t>(layers.cells());
-    MeshFaults faults(mesh, cellFaces, strictLimits(limits), thinFrom);
-    FaultCount poor;
-    faults.poorCells(poor);
-    summary.badCells = static_cast<std::int64_t>(faults.badCells().size());
-    summary.poorFaces = poor.all;
-    const std::vector<Vec3> walls = wallPositions(front);
-    Optimiser optimiser(mesh, cellFaces, faults, front, layers, guide);
-    const auto isClean = [&] {
-        faults.poorCells(poor);
-        return poor.all == 0 && faults.badCells().empty();
-    };
-    const auto stepBack = [&](RetreatFrom from) {
-        RetreatSummary r = retreatFromFaults(mesh, cellFaces, faults, front, optimiser.nodes(), lattice, layers, startThickness, from);
-        summary.rounds += r.rounds, summary.retracted += r.retracted;
-        summary.wrongCells = std::move(r.wrongCells);
-        summary.remaining = static_cast<std::int64_t>(summary.wrongCells.size());
-    };
-    // What single moves do not mend steps back; from there they may.
-    const auto settle = [&] {
-        constexpr std::int64_t any = std::numeric_limits<std::int64_t>::max();
-        std::int64_t goOnBelow = any; // many faults that stay are given up
-        for (int round = 0; round < settleRounds && !isClean() && (poor.all < goOnBelow || !faults.badCells().empty()); ++round) {
-            goOnBelow = poor.all > manyFaults ? poor.all / 2 : any;
-            const std::int64_t before = summary.moves;
-            summary.moves += optimiser.mend(thin ? thinSweeps : mendSweeps);
-            if (isClean()) return;
-            if (thin) {
-                for (int i = 0; i < bendRounds && optimiser.bend() > 0 && !isClean(); ++i) summary.moves += optimiser.mend(thinPause);
-                if (isClean()) return;
-                // A retreat makes columns no better: it takes whole regions off the wall.
-                summary.moves += optimiser.mend(mendSweeps, true);
-                if (isClean() || (summary.moves == before && faults.badCells().empty())) return;
-            }
-            stepBack(thin ? RetreatFrom::wrong : RetreatFrom::poor);
-        }
-    };
-    settle();
-    const auto noteMoved = [&] {
-        for (std::size_t v = 0; v < walls.size(); ++v) summary.movedWalls.push_back(!(front.wall(v) == walls[v]));
-    };
-    if (summary.remaining > 0) {
-        noteMoved();
-        return summary;
-    }
-    summary.moves += optimiser.snapWished(wishSweeps);
-    summary.moves += optimiser.pullIn(pullSweeps);
-    settle();
-    isClean();
-    // Rather a few nodes off the wall than a face that spoils the solution.
-    if (poor.severe > 0 && poor.severe <= fewFaults) {
-        if (thin) stepBack(RetreatFrom::severe);
-        summary.moves += optimiser.mend(mendSweeps, !thin);
-        isClean();
-    }
-    optimiser.mendTets(tetSweeps);
-    const auto findFolded = [&] {
-        for (const std::int32_t f : faults.undividedFaces())
-            if (mesh.owner[static_cast<std::size_t>(f)] >= thinFrom) summary.foldedCells.push_back(mesh.owner[static_cast<std::size_t>(f)]);
-    };
-    if (!mayThinLeave) {
-        findFolded();
-        if (!summary.foldedCells.empty() && summary.foldedCells.size() <= mostFolded) {
-            noteMoved();
-            return summary;
-        }
-        summary.foldedCells.clear();
-    }
-    const auto facesLeft = [&] {
-        std::vector<std::int32_t> undivided = faults.undividedFaces();
-        if (!mayThinLeave) std::erase_if(undivided, [&](std::int32_t f) { return mesh.owner[static_cast<std::size_t>(f)] >= thinFrom; });
-        return undivided.empty() ? undivided : facesBeyondHelp(mesh, cellFaces, undivided, limits, thinFrom);
-    };
-    std::vector<std::int32_t> left = facesLeft();
-    for (int round = 0; round < offRounds && !left.empty(); ++round) {
-        optimiser.mendTetsOffWall(left, offSweeps);
-        left = facesLeft();
-    }
-    // What helps one face may be in the way of another's help.
-    for (int round = 0; round < backRounds && !left.empty(); ++round) {
-        if (stepBackFrom(left, {mesh, cellFaces, faults, front, lattice, startThickness, limits}, optimiser) == 0) break;
-        left = facesLeft();
-    }
-    mendFlatCells(mesh, cellFaces, faults, limits, optimiser);
-    isClean();
-    summary.poorRemaining = poor.all;
-    summary.unmended = faults.poorFaces();
-    findFolded();
-    noteMoved();
-    return summary;
+    return Repairer(mesh, front, lattice, layers, startThickness, guide, limits).run(mayThinLeave);
 }
 
 } // namespace i2b

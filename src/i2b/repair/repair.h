@@ -13,8 +13,6 @@
 
 namespace i2b {
 
-inline constexpr std::size_t mostFolded = 2000; // thin cells under which the wall is cut: where more are, their height asks for it
-
 struct RepairSummary {
     int rounds = 0;
     std::int64_t moves = 0;      // of single nodes to better places
@@ -33,8 +31,7 @@ struct RepairSummary {
 
 // startThickness: what buildFront() was given. Moves points of mesh, and front positions alike; columns of layers whose
 // wall position steps back lose their bend with it. limits: what the last resort will be asked to hold; where it would not, wall nodes
-// leave the geometry a little, those under thin layers only if they may: cutting the wall under them comes first, and where there is
-// something to be cut what would come after it is left out.
+// leave the geometry a little, those under thin layers only if they may: cutting the wall under them comes first.
 RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, LayerStack& layers, double startThickness,
                      const WallGuide& guide, const DictionaryLimits& limits, bool mayThinLeave);
 
