@@ -97,10 +97,32 @@ TEST(StackLevels, FollowThePlanAsFarAsTheRoomGoes) {
     EXPECT_NEAR(tight[3], 0.5 * tight[2], 1e-6);
 }
 
+// Cells over layers far lower than the room: no one is more than three times as high as the one before, as few as do, all in one ratio; with
+// one more or fewer, beside others, the layers themselves stay.
+TEST(StackLevels, CellsOverThinLayersGrowGently) {
+    const LayerPlan plan{3, 1, 1.2, false};
+    for (double room = 4.5; room < 1000; room *= 1.07) {
+        const int cells = wantedCells(plan, room, 1);
+        const std::vector<double> heights = cellHeights(plan, room, cells);
+        for (std::size_t k = 1; k < heights.size(); ++k) EXPECT_LE(heights[k], 3.0000001 * heights[k - 1]) << room;
+        if (cells > 4) {
+            EXPECT_NEAR(heights[4] / heights[3], heights[3] / heights[2], 1e-6) << room;
+            EXPECT_GT(cellHeights(plan, room, cells - 1).back(), 3 * cellHeights(plan, room, cells - 1)[std::size_t(cells) - 3]) << room << ": fewer would not do";
+        }
+        for (const int beside : {cells - 1, cells, cells + 1}) {
+            if (beside < 4 || beside > plan.count + maxOver) continue;
+            const std::vector<double> other = cellHeights(plan, room, beside);
+            if (room < 3.64 + 0.5 * 1.44 * (beside - 3)) continue; // no room for so many
+            EXPECT_THAT(std::vector<double>(other.begin(), other.begin() + 3), Near(1e-9, {1, 1.2, 1.44})) << room << ", " << beside;
+        }
+    }
+    EXPECT_EQ(wantedCells(plan, 1e9, 1), plan.count + maxOver);
+}
+
 // Neighbours whose rooms differ a little have nearly the same heights, whichever cells they share.
 TEST(StackLevels, DoNotJump) {
     const LayerPlan plan{5, 1, 1.2, false};
-    for (const int cells : {2, 3, 5, 6}) {
+    for (const int cells : {2, 3, 5, 6, 7, 8}) {
         for (double room = 0.1; room < 14; room += 0.01) {
             const std::vector<double> a = cellHeights(plan, room, cells), b = cellHeights(plan, room + 0.01, cells);
             for (std::size_t k = 0; k < a.size(); ++k) {

@@ -41,7 +41,7 @@ class Prisms {
         const auto levels = static_cast<Index>(cells_) + 1;
         points_.resize(n_ * levels);
         for (Index i = 0; i < n_; ++i) {
-            std::array<Vec3, maxLayers + 1> column;
+            std::array<Vec3, maxStack + 1> column;
             const Index v = vertices_[i];
             placeLayers(stack, v, front_.front[v], front_.wall(v), column.data());
             const auto points = static_cast<Index>(stack.pointsOf(v));

@@ -9,6 +9,8 @@ namespace {
 
 constexpr double leastTransition = 0.5; // of the height of the last layer
 constexpr double wantedTransition = 1;  // the same
+constexpr double mostTransition = 3;    // times as high as the cell before
+constexpr double least = 0.01, most = 100; // bounds of that ratio where cells are as many as those beside them
 constexpr double sameEnough = 0.01;     // three figures that agree as well do not contradict each other
 
 // Changes first and growth so that n layers and a cell of `extra` times the last one's height fill `height`.
@@ -100,18 +102,22 @@ double askedThickness(const LayerPlan& plan, double room, double cellSize) {
 int wantedCells(const LayerPlan& plan, double room, double cellSize) {
     if (plan.count == 0 || plan.fills()) return std::max(1, plan.count);
     const double first = plan.firstAt(cellSize), top = first * std::pow(plan.growth, plan.count - 1);
-    return plan.count + (room > stackHeight(first, plan.growth, plan.count) + leastTransition * top ? 1 : 0);
+    const double left = room - stackHeight(first, plan.growth, plan.count);
+    if (!(left > leastTransition * top)) return plan.count;
+    int over = 1;
+    while (over < maxOver && left > stackHeight(mostTransition * top, mostTransition, over)) ++over;
+    return plan.count + over;
 }
 
 void stackLevels(const LayerPlan& plan, double room, double cellSize, int cells, double* level) {
     if (cells <= 1) return;
-    const int n = std::max(plan.count, plan.fills() ? cells : cells - 1);
+    const int n = plan.fills() ? std::max(plan.count, cells) : std::max(plan.count, 1), over = std::max(0, cells - n);
     double growth = plan.growth, first = plan.fills() ? room / stackHeight(1, growth, n) : plan.firstAt(cellSize);
     const double top = first * std::pow(growth, n - 1), asked = stackHeight(first, growth, n);
     if (plan.fills()) {
         // as it is
-    } else if (cells > n) {
-        if (room < asked + leastTransition * top) fit(first, growth, n, room, leastTransition);
+    } else if (over > 0) {
+        if (room < asked + over * leastTransition * top) fit(first, growth, n, room, over * leastTransition);
     } else if (cells == n) {
         const double more = room - asked; // shared out; ever less of it from half a layer to a whole one, where the last cell takes it
         fit(first, growth, n, more < 0 ? room : asked + std::min(more, std::max(0.0, top - more)), 0);
@@ -119,7 +125,12 @@ void stackLevels(const LayerPlan& plan, double room, double cellSize, int cells,
         fit(first, growth, cells, room, 0);
     }
     double z = 0;
-    for (int j = 0; j + 1 < cells; ++j, first *= growth) level[j] = z += first;
+    const int layers = std::min(n, cells);
+    for (int j = 0; j < layers && j + 1 < cells; ++j, first *= growth) level[j] = z += first;
+    if (over < 2) return;
+    const double last = first / growth, left = room - z; // of the layers; what they leave
+    const double ratio = solveGrowth(last, left + last, over + 1, least, most); // the last layer goes before those over it
+    for (int j = layers; j + 1 < cells; ++j) level[j] = z += last * std::pow(ratio, j - layers + 1);
 }
 
 } // namespace i2b

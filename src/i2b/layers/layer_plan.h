@@ -7,7 +7,9 @@
 
 namespace i2b {
 
-constexpr int maxLayers = 100;       // and a cell over them
+constexpr int maxLayers = 100;
+constexpr int maxOver = 6;           // cells over them, between the last layer and the front
+constexpr int maxStack = maxLayers + maxOver;
 constexpr double leastGrowth = 0.5, mostGrowth = 4;
 constexpr double defaultGrowth = 1.2;
 
@@ -41,8 +43,9 @@ double stackHeight(double first, double ratio, int n);
 double solveGrowth(double first, double height, int n, double lo, double hi, double extra = 0);
 
 // Distances (m, rising) from the wall of the cells - 1 points between wall and front into level. room: m, from wall to
-// front; cells: of the stack, at most one more than the plan's layers.
-//   One cell more than layers: it takes what the layers leave of the room, at least half the height of the last layer.
+// front; cells: of the stack, at most maxOver more than the plan's layers.
+//   More cells than layers: they take what the layers leave of the room, on average at least half the height of the last layer, each in the
+//   same ratio to the one before it.
 //   As many: where the room is up to half a layer higher than asked, it is shared out over all layers.
 //   Fewer, beside stacks of fewer cells: the cells at the wall as asked, the last takes the rest.
 // Where the room is too small the growth falls down to 1 while the first height stays, then all heights.
@@ -51,7 +54,8 @@ void stackLevels(const LayerPlan& plan, double room, double cellSize, int cells,
 // The layers' height as asked, in m: of the room where they fill it.
 double askedThickness(const LayerPlan& plan, double room, double cellSize);
 double askedFirst(const LayerPlan& plan, double room, double cellSize);
-// Cells of a stack of its own: a further one where the room is over half the last layer higher than what is asked.
+// Cells of a stack of its own: further ones where the room is over half the last layer higher than what is asked, so many that none is more
+// than three times as high as the one before it.
 int wantedCells(const LayerPlan& plan, double room, double cellSize);
 
 } // namespace i2b

@@ -15,12 +15,12 @@ constexpr double asHigh = 1.55;   // an innermost cell up to so much higher than
 // Means over the vertices of a face.
 struct Means {
     double room = 0, size = 0;
-    std::array<double, maxLayers + 2> level{}; // m, from the wall; level[cells] is the room
+    std::array<double, maxStack + 2> level{}; // m, from the wall; level[cells] is the room
 };
 
 Means meansOf(const Front& front, const LayerStack& stack, std::size_t face) {
     Means m;
-    std::array<double, maxLayers + 1> z{};
+    std::array<double, maxStack + 1> z{};
     const int cells = stack.cellsOf(face);
     int n = 0;
     for (auto vertex : front.mesh.fv_range(FrontMesh::FaceHandle(static_cast<int>(face)))) {
@@ -89,7 +89,7 @@ void settleCells(WallLayers& walls, const LayerStack& stack, std::int32_t firstL
             const auto [from, to] = std::ranges::equal_range(morePieces, last);
             walls.pieces[f] = static_cast<std::uint8_t>(1 + (to - from));
         }
-        std::array<std::int32_t, maxLayers + 2> cells{};
+        std::array<std::int32_t, maxStack + 2> cells{};
         int n = 0;
         for (std::int32_t c = first; c <= last; ++c) cells[static_cast<std::size_t>(n++)] = now(c);
         std::sort(cells.begin(), cells.begin() + n);

@@ -117,7 +117,7 @@ double leastShareOf(const Front& front, const LayerStack& stack) {
     using Sums = std::vector<Sum>; // per plan
     const auto body = [&](std::size_t begin, std::size_t end) {
         Sums sums(stack.plans.size());
-        std::array<double, maxLayers + 1> heights;
+        std::array<double, maxStack + 1> heights;
         for (std::size_t v = begin; v < end; ++v) {
             const int n = stack.pointsOf(v);
             const double room = roomAt(front, v);
@@ -206,7 +206,7 @@ void LayerStack::heights(std::size_t vertex, double room, double* out) const {
 }
 
 void placeLayers(const LayerStack& layers, std::size_t vertex, const Vec3& front, const Vec3& wall, Vec3* out) {
-    std::array<double, maxLayers + 1> heights;
+    std::array<double, maxStack + 1> heights;
     const Vec3 way = front - wall;
     const double room = norm(way);
     const auto n = static_cast<std::size_t>(layers.pointsOf(vertex));

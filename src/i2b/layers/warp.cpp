@@ -69,18 +69,18 @@ class Cutter {
     // Are the centres of all layers on a polygon well inside?
     bool isFlat(const Polygon& polygon) const {
         const Index n = polygon.size();
-        int cells = maxLayers + 1;
+        int cells = maxStack + 1;
         for (const std::int32_t v : polygon) cells = std::min(cells, stack_.pointsOf(static_cast<Index>(v)));
         std::vector<Vec3> points(n * static_cast<Index>(cells));
         for (Index i = 0; i < n; ++i) {
             const auto v = static_cast<Index>(polygon[i]);
-            std::array<Vec3, maxLayers + 1> column;
+            std::array<Vec3, maxStack + 1> column;
             placeLayers(stack_, v, front_.front[v], front_.wall(v), column.data());
             const auto last = static_cast<Index>(stack_.pointsOf(v)) - 1;
             for (Index k = 0; k < static_cast<Index>(cells); ++k) points[k * n + i] = column[last - k];
         }
         const auto level = [&](int k) { return std::span<const Vec3>(&points[static_cast<Index>(k) * n], n); };
-        std::array<ThinCell, maxLayers + 1> cell;
+        std::array<ThinCell, maxStack + 1> cell;
         for (int k = 0; k + 1 < cells; ++k) {
             cell[static_cast<Index>(k)] = thinCell(level(k), level(k + 1));
             if (!(cell[static_cast<Index>(k)].centreShare > leastShare)) return false;

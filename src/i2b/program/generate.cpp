@@ -25,6 +25,8 @@
 namespace i2b {
 namespace {
 
+constexpr double usualRoom = 0.45; // of a cell, between front and wall
+
 void refuseTooLarge(const Surface& surface, const SizeField& field, int layers, bool gridOnly) {
     const double need = estimateBytes(surface, field, layers, gridOnly);
     const auto have = static_cast<double>(availableBytes());
@@ -149,7 +151,7 @@ std::unique_ptr<GridResult> generateGrid(const Options& options, Context& contex
         context, "size", [&] { return makeSizeField(r.surface, options.size, options.domain, r.index.get()); },
         [](const SizeField& f) { return f.lattice.maxLevel + 1; });
     const LayerPlan plan = planOf(requestOf(options.layers), options.layers.unit);
-    const int layerCells = plan.count + (plan.fills() ? 0 : 1); // with the one over them
+    const int layerCells = wantedCells(plan, usualRoom * options.size.surface, options.size.surface); // with those over them
     refuseTooLarge(r.surface, r.field, layerCells, road != Road::mesh);
     if (options.size.curvature > 0 || options.size.gapCells > 0) {
         Stage timed(context, "automatic sizes");

@@ -79,7 +79,7 @@ Vec3 MeshNodes::frontUnder(std::int32_t vertex, const Vec3& wall) const {
 }
 
 void MeshNodes::stack(std::int32_t vertex, const Vec3& front, const Vec3& wall, Moved& out) const {
-    std::array<Vec3, maxLayers + 1> points;
+    std::array<Vec3, maxStack + 1> points;
     placeLayers(layers_, Index(vertex), front, wall, points.data());
     const auto first = core_ + static_cast<std::int32_t>(layers_.pointOffset(Index(vertex)));
     for (int k = 0; k < layers_.pointsOf(Index(vertex)); ++k) out.emplace_back(first + k, points[Index(k)]);
