@@ -10,7 +10,6 @@ namespace {
 constexpr double leastTransition = 0.5; // of the height of the last layer
 constexpr double wantedTransition = 1;  // the same
 constexpr double mostTransition = 3;    // times as high as the cell before
-constexpr double least = 0.01, most = 100; // bounds of that ratio where cells are as many as those beside them
 constexpr double sameEnough = 0.01;     // three figures that agree as well do not contradict each other
 
 // Changes first and growth so that n layers and a cell of `extra` times the last one's height fill `height`.
@@ -19,6 +18,19 @@ void fit(double& first, double& growth, int n, double height, double extra) {
     growth = solveGrowth(first, height, n, lo, hi, extra);
     const double now = stackHeight(first, growth, n) + extra * first * std::pow(growth, n - 1);
     if (now > height) first *= height / now; // even growth 1 does not do
+}
+
+// r for which r + r^2 + ... + r^n = sum, by Newton's method: from above on a rising curve that bends up it never steps past.
+double ratioOf(double sum, int n) {
+    double r = std::pow(sum, 1.0 / n);
+    for (int i = 0; i < 40; ++i) {
+        double value = 0, slope = 0;
+        for (int k = 0; k < n; ++k) slope = slope * r + value + 1, value = (value + 1) * r; // of the sum of 1 to r^k, times r
+        const double step = (value - sum) / slope;
+        r -= step;
+        if (!(step > 1e-13 * r)) break;
+    }
+    return r;
 }
 
 } // namespace
@@ -128,9 +140,9 @@ void stackLevels(const LayerPlan& plan, double room, double cellSize, int cells,
     const int layers = std::min(n, cells);
     for (int j = 0; j < layers && j + 1 < cells; ++j, first *= growth) level[j] = z += first;
     if (over < 2) return;
-    const double last = first / growth, left = room - z; // of the layers; what they leave
-    const double ratio = solveGrowth(last, left + last, over + 1, least, most); // the last layer goes before those over it
-    for (int j = layers; j + 1 < cells; ++j) level[j] = z += last * std::pow(ratio, j - layers + 1);
+    double height = first / growth; // of the last layer
+    const double ratio = ratioOf((room - z) / height, over);
+    for (int j = layers; j + 1 < cells; ++j) level[j] = z += height *= ratio;
 }
 
 } // namespace i2b
