@@ -13,6 +13,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <optional>
+#include <random>
 #include <string>
 #include <vector>
 #include <zlib.h>
@@ -104,6 +105,17 @@ inline ReadResult read(const std::vector<std::string>& files, double scale = 1) 
         result.error = error;
     }
     return result;
+}
+
+// Cut off every few bytes, and with bytes under `below` strewn in: read or refused, and never anything else.
+inline void readDamaged(const TempFolder& folder, const std::string& name, const std::string& whole, std::size_t step, unsigned below) {
+    std::mt19937 random(3);
+    for (std::size_t k = 1; k <= whole.size(); k += step) read({folder.write(name, whole.substr(0, k))});
+    for (int k = 0; k < 300; ++k) {
+        std::string damaged = whole;
+        for (int times = 0; times < 3; ++times) damaged[random() % damaged.size()] = static_cast<char>(random() % below);
+        read({folder.write(name, damaged)});
+    }
 }
 
 inline bool contains(const std::string& text, const std::string& part) {

@@ -154,13 +154,7 @@ TEST(ReadNastran, LargeDecksInAnyOrder) {
 TEST(ReadNastran, DamagedDecks) {
     const TempFolder folder;
     const std::string deck = "$ANSA_NAME;7;PSHELL;~\n$skin\n" + grids + "CTRIA3  11      7       1       2       3\nCQUAD4  12      7       1       3       4       5\nENDDATA\n";
-    std::mt19937 random(3);
-    for (std::size_t k = 1; k <= deck.size(); k += 3) read({folder.write("cut.nas", deck.substr(0, k))});
-    for (int k = 0; k < 300; ++k) {
-        std::string damaged = deck;
-        for (int times = 0; times < 3; ++times) damaged[random() % damaged.size()] = static_cast<char>(random() % 128);
-        read({folder.write("damaged.nas", damaged)});
-    }
+    readDamaged(folder, "damaged.nas", deck, 3, 128);
 }
 
 } // namespace

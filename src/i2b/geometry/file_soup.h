@@ -37,6 +37,14 @@ struct StlPiece {
 // How a triangle is taken; see GeometryNotes.
 enum class TriangleKind { good, zeroArea, coincident, notNumber };
 TriangleKind kindOf(const Vec3& a, const Vec3& b, const Vec3& c);
+// Counts a triangle, in anything that counts them as GeometryNotes does; is it one to keep?
+template <class Counts>
+bool isKept(TriangleKind kind, Counts& counts) {
+    counts.notNumbers += kind == TriangleKind::notNumber;
+    counts.coincident += kind == TriangleKind::coincident;
+    counts.zeroArea += kind == TriangleKind::zeroArea;
+    return kind == TriangleKind::good || kind == TriangleKind::zeroArea;
+}
 
 FileSoup readStlBinary(const MappedFile& file, double scale);
 FileSoup readStlAscii(const MappedFile& file, double scale);

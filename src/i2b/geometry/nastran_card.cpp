@@ -58,16 +58,9 @@ void NastranCard::addLine(std::string_view line, std::string& tabless) {
 void NastranCard::read(text::Cursor& c) {
     name_ = {}, count_ = 0;
     for (std::string& tabless : tabless_) {
-        const char* const begin = c.at;
-        c.skipLine();
-        addLine({begin, static_cast<std::size_t>(c.at - begin)}, tabless);
-        const char* next = c.at;
-        if (next != c.end && *next == '\r') ++next;
-        if (next != c.end && *next == '\n' && next - c.at < 2) ++next;
-        c.at = next;
-        text::Cursor ahead = c;
-        ahead.skipLine();
-        if (count_ == mostFields || !continuesCard({c.at, static_cast<std::size_t>(ahead.at - c.at)})) return;
+        addLine(c.line(), tabless);
+        c.skipLine(), c.skipLineEnd();
+        if (count_ == mostFields || !continuesCard(c.line())) return;
     }
 }
 

@@ -12,12 +12,6 @@ constexpr std::array<std::string_view, 3> triangles{"ctria3", "ctria6", "ctriar"
 constexpr std::array<std::string_view, 4> quadrangles{"cquad4", "cquad8", "cquadr", "cquad"};
 constexpr std::array<std::string_view, 12> others{"ctetra", "chexa", "cpenta", "cpyram", "cbar", "cbeam", "crod", "conrod", "ctube", "cshear", "ctriax6", "cbush"};
 
-std::string_view lineAt(text::Cursor c) {
-    const char* const begin = c.at;
-    c.skipLine();
-    return {begin, static_cast<std::size_t>(c.at - begin)};
-}
-
 // A whole number at the begin of a text, which is taken off it with the blanks around.
 std::optional<std::int32_t> takeNumber(std::string_view& rest) {
     rest = text::trimmed(rest);
@@ -106,9 +100,9 @@ struct DeckReader {
         addName(property, 2, rest);
     }
     void readComment(text::Cursor& c) {
-        const std::string_view line = lineAt(c);
+        const std::string_view line = c.line();
         c.skipLine(), c.skipBlank();
-        if (line.starts_with("$ANSA_NAME;") || line.starts_with("$ANSA_NAME_COMMENT;")) readAnsaName(line.substr(10), lineAt(c));
+        if (line.starts_with("$ANSA_NAME;") || line.starts_with("$ANSA_NAME_COMMENT;")) readAnsaName(line.substr(10), c.line());
         if (line.starts_with("$HMNAME ")) readHyperMeshName(text::trimmed(line.substr(8)));
         if (line.starts_with("$ Femap")) readFemapName(line);
     }
@@ -121,7 +115,7 @@ struct DeckReader {
             if (isAny(quadrangles)) return readElement(at, 4);
             piece.otherElements += isAny(others);
             piece.ends = card.is("enddata");
-            const std::string_view line = lineAt({at, c.end});
+            const std::string_view line = text::Cursor{at, c.end}.line();
             piece.includes += text::equalsNoCase(line.substr(0, std::min<std::size_t>(8, line.size())), "include ");
             return !piece.ends;
         }

@@ -67,11 +67,9 @@ PlyHeader readPlyHeader(std::string_view bytes) {
     PlyHeader header;
     text::Cursor c{bytes.data(), bytes.data() + std::min(bytes.size(), mostBytes)};
     while (!c.done()) {
-        const char* const begin = c.at;
-        c.skipLine();
-        text::Cursor line{begin, c.at};
-        if (!c.done() && *c.at == '\r') ++c.at;
-        if (!c.done() && *c.at == '\n') ++c.at;
+        const std::string_view whole = c.line();
+        c.skipLine(), c.skipLineEnd();
+        text::Cursor line{whole.data(), whole.data() + whole.size()};
         const std::string_view word = line.token();
         if (word == "end_header") {
             header.bytes = static_cast<std::size_t>(c.at - bytes.data());
@@ -83,7 +81,7 @@ PlyHeader readPlyHeader(std::string_view bytes) {
                                                  : true;
         if (word == "comment") addPart(line, header);
         if (!isRight) {
-            header.fault = fmt::format("the PLY header says \"{}\"", text::trimmed({begin, static_cast<std::size_t>(line.end - begin)}));
+            header.fault = fmt::format("the PLY header says \"{}\"", text::trimmed(whole));
             return header;
         }
     }

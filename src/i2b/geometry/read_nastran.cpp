@@ -20,12 +20,6 @@ constexpr std::size_t pieceBytes = std::size_t{1} << 20;
 constexpr std::size_t headBytes = std::size_t{1} << 16; // in which a deck shows that it is one
 constexpr std::array<std::string_view, 8> shellNames{"ctria3", "ctria6", "ctriar", "cquad4", "cquad8", "cquadr", "cquad", "grid"};
 
-std::string_view lineAt(std::string_view bytes, std::size_t at) {
-    text::Cursor c{bytes.data() + at, bytes.data() + bytes.size()};
-    c.skipLine();
-    return bytes.substr(at, static_cast<std::size_t>(c.at - bytes.data()) - at);
-}
-
 bool isShellCard(std::string_view line) {
     return std::ranges::any_of(shellNames, [&](std::string_view name) {
         if (line.size() <= name.size() || !text::equalsNoCase(line.substr(0, name.size()), name)) return false;
@@ -35,7 +29,7 @@ bool isShellCard(std::string_view line) {
 }
 
 // Names stand in comments before cards of other kinds; those are never cut off.
-bool canStart(std::string_view bytes, std::size_t at) { return isShellCard(lineAt(bytes, at)); }
+bool canStart(std::string_view bytes, std::size_t at) { return isShellCard(text::Cursor{bytes.data() + at, bytes.data() + bytes.size()}.line()); }
 
 struct Deck {
     const MappedFile& file;
@@ -107,10 +101,7 @@ Taken resolve(const Deck& deck, const Piece& piece) {
     Taken taken;
     const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::int32_t property) {
         const TriangleKind kind = kindOf(deck.points[a], deck.points[b], deck.points[c]);
-        taken.notNumbers += kind == TriangleKind::notNumber;
-        taken.coincident += kind == TriangleKind::coincident;
-        taken.zeroArea += kind == TriangleKind::zeroArea;
-        if (kind != TriangleKind::good && kind != TriangleKind::zeroArea) return;
+        if (!isKept(kind, taken)) return;
         taken.triangles.push_back({a, b, c}), taken.property.push_back(property);
     };
     for (const Piece::Element& element : piece.elements) {
@@ -197,7 +188,7 @@ bool looksLikeNastran(std::string_view bytes) {
     if (bytes.find('\0') != std::string_view::npos) return false;
     text::Cursor c{bytes.data(), bytes.data() + bytes.size()};
     for (; !c.done(); c.skipLine(), c.skipBlank()) {
-        const std::string_view line = lineAt(bytes, static_cast<std::size_t>(c.at - bytes.data()));
+        const std::string_view line = c.line();
         if (isShellCard(line) || (line.size() >= 10 && text::equalsNoCase(line.substr(0, 10), "begin bulk"))) return true;
     }
     return false;

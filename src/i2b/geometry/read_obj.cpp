@@ -112,10 +112,8 @@ Taken resolvePiece(ObjFile& obj, std::size_t i) {
         if (!place(v[0]) || !place(v[1]) || !place(v[2])) return taken;
         const auto point = [&](std::size_t k) { return obj.points[static_cast<std::size_t>(v[k])]; };
         const TriangleKind kind = kindOf(point(0), point(1), point(2));
-        if (kind == TriangleKind::notNumber && taken.notNumbers++ == 0) taken.firstNotNumber = t;
-        taken.coincident += kind == TriangleKind::coincident;
-        taken.zeroArea += kind == TriangleKind::zeroArea;
-        if (kind == TriangleKind::good || kind == TriangleKind::zeroArea) piece.triangles[kept++] = v;
+        if (kind == TriangleKind::notNumber && taken.notNumbers == 0) taken.firstNotNumber = t;
+        if (isKept(kind, taken)) piece.triangles[kept++] = v;
     }
     moveNames(piece.triangles.size());
     piece.triangles.resize(kept);

@@ -139,10 +139,7 @@ void PlyReader::addFace(const std::vector<double>& corners, double part, std::ui
     for (std::size_t k = 2; k < corners.size(); ++k) {
         const std::array<std::uint32_t, 3> v{point(0), point(k - 1), point(k)};
         const TriangleKind kind = kindOf(points_[v[0]], points_[v[1]], points_[v[2]]);
-        soup_.notes.notNumbers += kind == TriangleKind::notNumber;
-        soup_.notes.coincident += kind == TriangleKind::coincident;
-        soup_.notes.zeroArea += kind == TriangleKind::zeroArea;
-        if (kind != TriangleKind::good && kind != TriangleKind::zeroArea) continue;
+        if (!isKept(kind, soup_.notes)) continue;
         const std::int32_t of = partOf(part);
         ++soup_.surface.parts[static_cast<std::size_t>(of)].triangles;
         soup_.surface.triangles.push_back(v), soup_.surface.partOf.push_back(of);

@@ -105,10 +105,8 @@ StlPiece readStretch(const MappedFile& file, const Stretch& stretch, double scal
         for (std::size_t i = 0; i < 3; ++i)
             p[i] = {scale * double(v[3 * i]), scale * double(v[3 * i + 1]), scale * double(v[3 * i + 2])};
         const TriangleKind kind = kindOf(p[0], p[1], p[2]);
-        if (kind == TriangleKind::notNumber && piece.notNumbers++ == 0) piece.firstNotNumber = at;
-        piece.coincident += kind == TriangleKind::coincident;
-        piece.zeroArea += kind == TriangleKind::zeroArea;
-        if (kind == TriangleKind::good || kind == TriangleKind::zeroArea)
+        if (kind == TriangleKind::notNumber && piece.notNumbers == 0) piece.firstNotNumber = at;
+        if (isKept(kind, piece))
             piece.triangles.push_back({welder.add(p[0]), welder.add(p[1]), welder.add(p[2])});
     }
     piece.points.shrink_to_fit();

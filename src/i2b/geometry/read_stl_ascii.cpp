@@ -69,10 +69,8 @@ struct FacetReader {
     }
     void takeTriangle(const Vec3& a, const Vec3& b, const Vec3& d) {
         const TriangleKind kind = kindOf(a, b, d);
-        if (kind == TriangleKind::notNumber && piece.notNumbers++ == 0) piece.firstNotNumber = placeOf(facet);
-        piece.coincident += kind == TriangleKind::coincident;
-        piece.zeroArea += kind == TriangleKind::zeroArea;
-        if (kind == TriangleKind::good || kind == TriangleKind::zeroArea)
+        if (kind == TriangleKind::notNumber && piece.notNumbers == 0) piece.firstNotNumber = placeOf(facet);
+        if (isKept(kind, piece))
             piece.triangles.push_back({welder.add(a), welder.add(b), welder.add(d)});
     }
     bool endFacet(const char* at) {

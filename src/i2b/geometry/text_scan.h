@@ -46,6 +46,15 @@ struct Cursor {
     void skipLine() {
         while (at != end && !isLineEnd(*at)) ++at;
     }
+    void skipLineEnd() { // one
+        if (at != end && *at == '\r') ++at;
+        if (at != end && *at == '\n') ++at;
+    }
+    std::string_view line() const { // what is left of it, as it is
+        Cursor ahead = *this;
+        ahead.skipLine();
+        return {at, static_cast<std::size_t>(ahead.at - at)};
+    }
     std::string_view token() { // after blanks; empty at the end
         skipBlank();
         const char* const begin = at;

@@ -126,7 +126,6 @@ void Repairer::mendSevere() {
     if (poor_.severe == 0 || poor_.severe > fewFaults) return;
     if (thin_) stepBack(RetreatFrom::severe);
     summary_.moves += optimiser_.mend(mendSweeps, !thin_);
-    isClean();
 }
 
 // Faces that nothing else makes divide into tetrahedra. Where many faces are beyond other limits for good, these are not worth as much.
