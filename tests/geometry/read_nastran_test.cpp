@@ -100,12 +100,12 @@ TEST(ReadNastran, Faults) {
         EXPECT_THAT(r.error->what(), HasSubstr(what));
     };
     const std::string triangle = "CTRIA3  11      7       1       2       3\n";
-    is("BEGIN BULK\nGRID,1,,0.,x,0.\n" + triangle, "a GRID has a coordinate that is no number, line 2");
-    is("BEGIN BULK\nGRID,one,,0.,0.,0.\n" + triangle, "a GRID has no number, line 2");
+    is("BEGIN BULK\nGRID,1,,0.,x,0.\n" + triangle, "a GRID has a coordinate that is no number at line 2");
+    is("BEGIN BULK\nGRID,one,,0.,0.,0.\n" + triangle, "a GRID has no number at line 2");
     is("BEGIN BULK\n\nGRID,1,5,0.,0.,0.\n" + triangle, "coordinate system of its own");
     is(grids + "CTRIA3  11      7       1       2       6\n", "an element names GRID 6, which is not among the 5");
-    is(grids + "CTRIA3  11      7       1       2\n", "an element has a corner without a number, line 6");
-    is(grids + "CTRIA3  11      seven   1       2       3\n", "an element has no property number, line 6");
+    is(grids + "CTRIA3  11      7       1       2\n", "an element has a corner without a number at line 6");
+    is(grids + "CTRIA3  11      seven   1       2       3\n", "an element has no property number at line 6");
     is(grids + "GRID,5,,0.,0.,2.\n" + triangle, "GRID 5 is there twice, at different places");
     is(grids, "has no triangles");
     is("BEGIN BULK\nENDDATA\n" + grids + triangle, "has no triangles");

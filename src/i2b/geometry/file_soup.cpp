@@ -3,6 +3,7 @@
 #include "i2b/core/parallel.h"
 #include "i2b/geometry/weld.h"
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace i2b {
 namespace {
@@ -52,6 +53,10 @@ TriangleKind kindOf(const Vec3& a, const Vec3& b, const Vec3& c) {
     const double longest = std::max({norm2(u), norm2(v), norm2(c - b)});
     if (longest == 0 && a == b && a == c) return TriangleKind::coincident;
     return norm2(cross(u, v)) <= 1e-24 * longest * longest ? TriangleKind::zeroArea : TriangleKind::good;
+}
+
+void refuseAt(const MappedFile& file, std::string_view fault, std::uint64_t at) {
+    throw Error(ErrorKind::input, fmt::format("{} at line {} of {} bytes", fault, text::lineOf(file.bytes(), at), file.bytes().size()), file.path(), "export it again");
 }
 
 void keepUsedPoints(std::vector<Vec3>& points, Surface& s) {

@@ -1,8 +1,10 @@
 // What one file gives, before names are settled and files are joined; private to the readers.
 #pragma once
+#include "i2b/core/parallel.h"
 #include "i2b/geometry/mapped_file.h"
 #include "i2b/geometry/read.h"
 #include "i2b/geometry/surface.h"
+#include "i2b/geometry/text_scan.h"
 #include <array>
 #include <cstdint>
 #include <string>
@@ -45,6 +47,26 @@ bool isKept(TriangleKind kind, Counts& counts) {
     counts.zeroArea += kind == TriangleKind::zeroArea;
     return kind == TriangleKind::good || kind == TriangleKind::zeroArea;
 }
+
+// A text in pieces, read side by side: read(begin, end) gives one, and canStart is as for text::pieces().
+template <class CanStart, class Read>
+auto readInPieces(const MappedFile& file, std::size_t size, const CanStart& canStart, const Read& read) {
+    const std::string_view bytes = file.bytes();
+    std::vector<std::size_t> starts = text::pieces(bytes, size, canStart);
+    if (bytes.starts_with("\xEF\xBB\xBF")) starts.front() = 3;
+    starts.push_back(bytes.size());
+    std::vector<decltype(read(std::size_t(), std::size_t()))> pieces(starts.size() - 1);
+    parallelFor(
+        pieces.size(),
+        [&](std::size_t i) {
+            pieces[i] = read(starts[i], starts[i + 1]);
+            file.release(starts[i], starts[i + 1]);
+        },
+        1);
+    return pieces;
+}
+// at: byte in the file.
+[[noreturn]] void refuseAt(const MappedFile& file, std::string_view fault, std::uint64_t at);
 
 FileSoup readStlBinary(const MappedFile& file, double scale);
 FileSoup readStlAscii(const MappedFile& file, double scale);

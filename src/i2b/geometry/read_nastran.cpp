@@ -46,20 +46,10 @@ struct Deck {
 
 void readPieces(Deck& deck, double scale) {
     const std::string_view bytes = deck.file.bytes();
-    std::vector<std::size_t> starts = text::pieces(bytes, pieceBytes, canStart);
-    if (bytes.starts_with("\xEF\xBB\xBF")) starts.front() = 3;
-    starts.push_back(bytes.size());
-    deck.pieces.resize(starts.size() - 1);
-    parallelFor(
-        deck.pieces.size(),
-        [&](std::size_t i) {
-            deck.pieces[i] = readNastranPiece(bytes, starts[i], starts[i + 1], scale);
-            deck.file.release(starts[i], starts[i + 1]);
-        },
-        1);
+    deck.pieces = readInPieces(deck.file, pieceBytes, canStart, [&](std::size_t begin, std::size_t end) { return readNastranPiece(bytes, begin, end, scale); });
     for (std::size_t i = 0; i < deck.pieces.size(); ++i) {
         const Piece& piece = deck.pieces[i];
-        if (!piece.fault.empty()) deck.refuse(fmt::format("{}, line {} of {} bytes", piece.fault, text::lineOf(bytes, piece.faultAt), bytes.size()));
+        if (!piece.fault.empty()) refuseAt(deck.file, piece.fault, piece.faultAt);
         if (piece.ends) deck.pieces.resize(i + 1);
     }
 }

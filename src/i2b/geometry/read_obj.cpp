@@ -53,21 +53,9 @@ struct ObjFile {
 
 void readPieces(ObjFile& obj, double scale) {
     const std::string_view bytes = obj.file.bytes();
-    std::vector<std::size_t> starts = text::pieces(bytes, pieceBytes, canStart);
-    if (bytes.starts_with("\xEF\xBB\xBF")) starts.front() = 3;
-    starts.push_back(bytes.size());
-    obj.pieces.resize(starts.size() - 1);
-    parallelFor(
-        obj.pieces.size(),
-        [&](std::size_t i) {
-            obj.pieces[i] = readObjPiece(bytes, starts[i], starts[i + 1], scale);
-            obj.file.release(starts[i], starts[i + 1]);
-        },
-        1);
+    obj.pieces = readInPieces(obj.file, pieceBytes, canStart, [&](std::size_t begin, std::size_t end) { return readObjPiece(bytes, begin, end, scale); });
     for (const ObjPiece& piece : obj.pieces) {
-        if (!piece.fault.empty())
-            obj.refuse(fmt::format("{} at line {} of {} bytes", piece.fault,
-                                   text::lineOf(bytes, piece.faultAt), bytes.size()));
+        if (!piece.fault.empty()) refuseAt(obj.file, piece.fault, piece.faultAt);
         obj.firstPoint.push_back(piece.points.size());
     }
     const std::size_t points = exclusiveScan(obj.firstPoint);

@@ -120,7 +120,6 @@ StlPiece readPiece(const MappedFile& file, std::size_t begin, std::size_t end, d
     if (reader.facet) reader.fail(reader.facet, "the file is truncated inside the facet that begins");
     piece.points.shrink_to_fit();
     piece.triangles.shrink_to_fit();
-    file.release(begin, end);
     return piece;
 }
 
@@ -136,20 +135,11 @@ bool looksLikeAsciiStl(std::string_view bytes) {
 
 FileSoup readStlAscii(const MappedFile& file, double scale) {
     const std::string_view bytes = file.bytes();
-    std::vector<std::size_t> starts = text::pieces(bytes, pieceBytes, canStart);
-    if (bytes.starts_with("\xEF\xBB\xBF")) starts.front() = 3;
-    starts.push_back(bytes.size());
-    std::vector<StlPiece> pieces(starts.size() - 1);
-    parallelFor(
-        pieces.size(), [&](std::size_t i) { pieces[i] = readPiece(file, starts[i], starts[i + 1], scale); },
-        1);
+    std::vector<StlPiece> pieces =
+        readInPieces(file, pieceBytes, canStart, [&](std::size_t begin, std::size_t end) { return readPiece(file, begin, end, scale); });
     std::uint64_t firstNotNumber = ~std::uint64_t{0};
     for (const StlPiece& piece : pieces) {
-        if (!piece.fault.empty())
-            throw Error(ErrorKind::input,
-                        fmt::format("{} at line {} of {} bytes", piece.fault,
-                                    text::lineOf(bytes, piece.faultAt), bytes.size()),
-                        file.path(), "export it again");
+        if (!piece.fault.empty()) refuseAt(file, piece.fault, piece.faultAt);
         firstNotNumber = std::min(firstNotNumber, piece.firstNotNumber);
     }
     const bool ended = pieces.back().endsSolid;
