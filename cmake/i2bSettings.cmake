@@ -18,8 +18,9 @@ set(I2B_ARCH "${I2B_ARCH_DEFAULT}" CACHE STRING "Instruction set (-march) of the
 # Contraction to fused operations would make results depend on the instruction set.
 set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O2 -g1 -DNDEBUG")
 add_library(i2b_settings INTERFACE)
-# Nobody here asks errno for a root's fault, or traps one: without either, roots are one instruction. Results are the same.
-target_compile_options(i2b_settings INTERFACE -Wall -Wextra -Wpedantic -Wconversion -ffp-contract=off -fno-math-errno -fno-trapping-math)
+# Nobody here asks errno for a root's fault, or traps one: without either, roots are one instruction. Nobody replaces a function of
+# a shared library made of this by another: without that, functions of a file call each other directly. Results are the same.
+target_compile_options(i2b_settings INTERFACE -Wall -Wextra -Wpedantic -Wconversion -ffp-contract=off -fno-math-errno -fno-trapping-math -fno-semantic-interposition)
 if(I2B_ARCH)
   target_compile_options(i2b_settings INTERFACE -march=${I2B_ARCH} -mno-fma)
 endif()

@@ -30,8 +30,9 @@ PolyMesh block() {
 
 TEST(CellQuality, WorstCellIsTheReportsWorst) {
     const PolyMesh mesh = block();
-    const QualityReport report = measureQuality(mesh);
-    const CellQuality q = measureCellQuality(mesh, geometryOfCells(mesh));
+    CellFigures cells;
+    const QualityReport report = measureQuality(mesh, {}, {}, &cells);
+    const CellQuality& q = cells.quality;
     EXPECT_GT(report.maxNonOrthogonality, 1);
     EXPECT_FLOAT_EQ(*std::max_element(q.nonOrthogonality.begin(), q.nonOrthogonality.end()), static_cast<float>(report.maxNonOrthogonality));
     EXPECT_FLOAT_EQ(*std::max_element(q.skewness.begin(), q.skewness.end()), static_cast<float>(report.maxSkewness));

@@ -35,7 +35,7 @@ struct MeshResult {
     std::unique_ptr<GridResult> cartesian;
     PolyMesh mesh;
     WallLayers walls; // wallCell: of the mesh
-    CellGeometry cells;             // of the mesh, where a file asks for it (vtu); else empty
+    CellFigures cells;              // of the mesh, where a file asks for them (vtu); else empty
     WallNodes wallNodes;            // how far each is off the geometry
     std::vector<OffCause> offCauses; // and why; as wallNodes.points
     RunReport report; // all but the total time and memory, which the caller knows at its end

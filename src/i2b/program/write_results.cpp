@@ -25,7 +25,7 @@ std::vector<CellData> layerData(const WallLayers& walls) {
             data("firstLayerHeight", walls.first), data("layerThickness", walls.thickness)};
 }
 
-void writeMeshFiles(const MeshResult& result, const OutputOptions& output, AtomicFolder& folder,
+void writeMeshFiles(MeshResult& result, const OutputOptions& output, AtomicFolder& folder,
                     Context& context) {
     const PolyMesh& mesh = result.mesh;
     Stage stage(context, "write");
@@ -42,14 +42,12 @@ void writeMeshFiles(const MeshResult& result, const OutputOptions& output, Atomi
     const std::vector<PointData> values{{"off_geometry", result.wallNodes.points, std::span<const float>(off)},
                                         {"off_cause", result.wallNodes.points, std::span(causes, result.offCauses.size())}};
     if (output.wants("vtu")) {
-        const CellGeometry made = result.cells.moments.empty() ? geometryOfCells(mesh) : CellGeometry{};
-        const CellGeometry& cells = result.cells.moments.empty() ? made : result.cells;
-        CellQuality q = measureCellQuality(mesh, cells);
+        CellQuality& q = result.cells.quality;
         std::vector<CellData> data = layerData(result.walls);
         data.push_back({"nonOrthogonality", std::move(q.nonOrthogonality)});
         data.push_back({"skewness", std::move(q.skewness)});
         data.push_back({"volume", std::move(q.volume)});
-        writeVtu(mesh, cells.faces, data, folder.place("mesh.vtu"), {}, context, values);
+        writeVtu(mesh, result.cells.faces, data, folder.place("mesh.vtu"), {}, context, values);
     }
     if (output.wants("ply")) writePly(mesh, folder.place("wall.ply"), context, {}, values);
 }

@@ -12,13 +12,22 @@ struct CellQuality {                     // one value per cell each
     std::vector<float> volume;           // m^3
 };
 
-// What a mesh's cells are made of, and what they come to: measureQuality() leaves it to whoever asks.
-struct CellGeometry {
-    Rows faces;                     // buildCellFaces()
-    RawVector<CellMoments> moments; // per cell
+// What measureQuality() has worked out of single cells on its way, for whoever asks.
+struct CellFigures {
+    Rows faces; // buildCellFaces()
+    CellQuality quality;
 };
-CellGeometry geometryOfCells(const PolyMesh& mesh);
 
-CellQuality measureCellQuality(const PolyMesh& mesh, const CellGeometry& cells);
+// Gathers the worst of each cell's faces; faces may come in any order and from any thread.
+class CellQualityMaker {
+  public:
+    explicit CellQualityMaker(const RawVector<CellMoments>& moments);
+    void addPair(std::int32_t own, std::int32_t nei, double cosine, double skewness); // an internal face, between two cells
+    void addBoundary(std::int32_t own, double skewness);
+    CellQuality take();
+
+  private:
+    CellQuality quality_; // until take(): one less the least cosine, not degrees
+};
 
 } // namespace i2b

@@ -1,6 +1,6 @@
-#include "i2b/quality/cell_quality.h"
 #include "i2b/quality/measure_steps.h"
 #include <algorithm>
+#include <optional>
 
 namespace i2b {
 namespace {
@@ -76,7 +76,7 @@ Box pointBox(std::span<const Vec3> points) {
 
 } // namespace
 
-QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits, const DictionaryLimits& dictionary, CellGeometry* left) {
+QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits, const DictionaryLimits& dictionary, CellFigures* left) {
     Measurement m{mesh, limits, dictionary, {}, {}, {}, {}, {}, {}, {}};
     m.report.limits = limits;
     m.report.cells = mesh.cells;
@@ -91,14 +91,16 @@ QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits, 
     measureZones(m);
     if (left) left->faces = std::move(m.cellFaces);
     m.cellFaces = {};
+    std::optional<CellQualityMaker> shown;
+    if (left) m.shown = &shown.emplace(m.moments);
     measureFaces(m);
+    if (left) left->quality = shown->take();
     measureRegions(m);
     measurePatches(m);
     const Rows pointFaces = buildPointFaces(mesh);
     measurePoints(m, pointFaces);
     measureFaceFaces(m, pointFaces);
     listChecks(m);
-    if (left) left->moments = std::move(m.moments);
     return std::move(m.report);
 }
 

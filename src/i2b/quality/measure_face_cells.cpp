@@ -53,8 +53,10 @@ class FaceCells {
             judge(*values, own, nei, broken);
         }
         if (leastPyramid / 3 < bounds_.pyramidVolume) broken.add(DictionaryLimit::pyramidVolume, -leastPyramid);
-        const double least = std::min(part.skewness.most, leastSkewness_); // less is not asked for
+        const double least = m_.shown ? 0 : std::min(part.skewness.most, leastSkewness_); // less is not asked for
         const double skew = faceSkewness(mesh_, id, shape, own.centre, neiCentre, least);
+        if (m_.shown && neiCentre) m_.shown->addPair(mesh_.owner[f], mesh_.neighbour[f], values->ortho, skew);
+        if (m_.shown && !neiCentre) m_.shown->addBoundary(mesh_.owner[f], skew);
         part.pyramidErrors += wrong;
         if (wrong > 0) part.wrongOriented.hit(id, -leastPyramid);
         part.skewness.add(skew);
@@ -135,6 +137,7 @@ class FaceStretch {
             flat[f - begin] = batch.flat[lane];
             values[f - begin] = {batch.ortho[lane], batch.weight[lane], batch.ratio[lane]};
             ++part.alone.flatnessFaces;
+            if (m_.shown) m_.shown->addPair(m_.mesh.owner[f], m_.mesh.neighbour[f], batch.ortho[lane], batch.skewness[lane]);
         };
         for (Index f = begin; f < end; ++f) {
             flat[f - begin] = -1;

@@ -1,6 +1,7 @@
 // The steps of measureQuality. Each fills its part of the report and of the tallies; measure.cpp puts them in
 // order.
 #pragma once
+#include "i2b/quality/cell_quality.h"
 #include "i2b/quality/mesh_geometry.h"
 #include "i2b/quality/quality_report.h"
 #include "i2b/quality/tally.h"
@@ -31,6 +32,7 @@ struct Measurement {
     std::vector<std::int32_t> hollowFaces; // theirs, with repetitions
     // Per cell and per face 1: of the cell only its moments count, of the face nothing; empty: all are measured.
     std::vector<std::uint8_t> outerCells{}, outerFaces{};
+    CellQualityMaker* shown = nullptr; // takes what measureFaces() finds, of each cell
 };
 
 // Of single cells: moments, closedness, aspect ratio, determinant, concavity, shape, edge

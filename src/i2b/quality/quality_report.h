@@ -129,13 +129,13 @@ struct QualityReport {
     bool ok() const { return failedChecks == 0; }
 };
 
-struct CellGeometry;
+struct CellFigures;
 
 // Definitions and tolerances are those of OpenFOAM v1912, and sums run in the order of the mesh, so that figures agree
 // with checkMesh's to the last digit printed. Coupled patches (cyclic, processor) are taken as plain boundary. Needs valid indices (what
 // PolyMesh::validate() says about ranges); anything else may be wrong with the mesh. Deterministic on any number of threads.
-// What was worked out about the cells goes to `left` (cell_quality.h), where there is one.
-QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits = {}, const DictionaryLimits& dictionary = {}, CellGeometry* left = nullptr);
+// What was worked out about single cells goes to `left` (cell_quality.h), where there is one.
+QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits = {}, const DictionaryLimits& dictionary = {}, CellFigures* left = nullptr);
 
 // The report as text: what the mesh is made of, its patches, zones and regions, then a table of all checks (worst
 // and mean value, limit, how many are beyond it, verdict, place of the worst) in three groups, and in the last line

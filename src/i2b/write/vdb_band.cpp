@@ -125,9 +125,13 @@ constexpr std::array<std::uint16_t, 512> toAndFro = [] {
     return order;
 }();
 
+using VoxelBits = openvdb::util::NodeMask<3>;
+
 struct Block {
     std::array<float, 512> distance{};
     std::array<Side, 512> side{};
+    VoxelBits open;  // of the band, on no known side
+    VoxelBits fresh; // on a known side since the last sweep
 };
 
 class BandBuilder {
@@ -149,8 +153,11 @@ class BandBuilder {
                 double reach = std::numeric_limits<double>::infinity(); // of the geometry from near
                 for (const openvdb::Index n : toAndFro) {
                     const Coord c = leaves_[i]->offsetToGlobalCoord(n);
-                    blocks_[i].side[n] = sideOf(level_, c);
+                    const Side side = sideOf(level_, c);
+                    blocks_[i].side[n] = side;
                     if (!leaves_[i]->isValueOn(n)) continue;
+                    blocks_[i].open.set(n, side == unknown);
+                    blocks_[i].fresh.set(n, side == positive || side == negative);
                     const Vec3 p = centre(c);
                     // It cannot be farther than by way of the voxel before: much is never looked at.
                     reach = distance_(p, 1.000001 * std::min(reach + norm(p - near), width));
@@ -161,8 +168,8 @@ class BandBuilder {
         });
     }
 
-    // Passes signs into the cut cells, one voxel a sweep; each sweep reads the one before alone, so the order
-    // in which voxels are visited does not matter.
+    // Passes signs into the cut cells, one voxel a sweep, from those that have got theirs in the sweep before; each sweep reads
+    // the one before alone, so the order in which voxels are visited does not matter.
     void passSigns(const Context& context) {
         for (int sweep = 0; sweep < 64; ++sweep) {
             context.checkCancelled();
@@ -170,8 +177,14 @@ class BandBuilder {
             parallelFor(
                 leaves_.size(), [&](std::size_t i) { sweepBlock(i, found[i]); }, 4);
             bool any = false;
-            for (std::size_t i = 0; i < found.size(); ++i)
-                for (const auto& [n, side] : found[i]) blocks_[i].side[n] = side, any = true;
+            for (std::size_t i = 0; i < found.size(); ++i) {
+                blocks_[i].fresh.setOff();
+                for (const auto& [n, side] : found[i]) {
+                    blocks_[i].side[n] = side;
+                    blocks_[i].fresh.setOn(n), blocks_[i].open.setOff(n);
+                    any = true;
+                }
+            }
             if (!any) return;
         }
     }
@@ -208,24 +221,27 @@ class BandBuilder {
     }
 
     void sweepBlock(std::size_t i, std::vector<std::pair<openvdb::Index, Side>>& found) const {
-        for (openvdb::Index n = 0; n < 512; ++n) {
-            if (blocks_[i].side[n] != unknown || !leaves_[i]->isValueOn(n)) continue;
+        for (auto voxel = blocks_[i].open.beginOn(); voxel; ++voxel) {
+            const openvdb::Index n = voxel.pos();
             const Coord c = leaves_[i]->offsetToGlobalCoord(n);
             for (int k = 0; k < 6; ++k) {
                 const auto& step = faceNeighbours[static_cast<std::size_t>(k)];
                 const Coord other = c.offsetBy(step[0], step[1], step[2]);
-                const auto block = number_.find(other & ~7);
-                if (block == number_.end()) continue;
+                const Block* const block = blockOf(i, other);
                 const openvdb::Index m = MaskLeaf::coordToOffset(other);
-                const Side side = blocks_[block->second].side[m];
-                if ((side != positive && side != negative) || !leaves_[block->second]->isValueOn(m)) continue;
-                if (!reaches(other, blocks_[block->second].distance[m], c, blocks_[i].distance[n],
-                             size_[k / 2]))
-                    continue;
-                found.emplace_back(n, side);
+                if (!block || !block->fresh.isOn(m)) continue;
+                if (!reaches(other, block->distance[m], c, blocks_[i].distance[n], size_[k / 2])) continue;
+                found.emplace_back(n, block->side[m]);
                 break;
             }
         }
+    }
+
+    // The block that a voxel is in, most often this one; nullptr: the band has none there.
+    const Block* blockOf(std::size_t here, const Coord& c) const {
+        if ((c & ~7) == leaves_[here]->origin()) return &blocks_[here];
+        const auto at = number_.find(c & ~7);
+        return at == number_.end() ? nullptr : &blocks_[at->second];
     }
 
     // Does the straight line between two voxel centres keep off the geometry? The spheres around the ends are
@@ -234,7 +250,8 @@ class BandBuilder {
         const Vec3 a = centre(from), b = centre(to);
         const double least = 1e-3 * length;
         for (double t = room; t < length - roomThere;) {
-            const double r = distance_(a + (b - a) * (t / length), std::numeric_limits<double>::infinity());
+            const double left = length - roomThere - t; // farther off, it is as good as infinitely far
+            const double r = distance_(a + (b - a) * (t / length), std::max(left, least));
             if (r < least) return false;
             t += r;
         }
