@@ -30,13 +30,16 @@ ClosestPoint closestWithinSides(const SurfaceIndex& index, const Vec3& q, std::u
     return c;
 }
 
-RawVector<Vec3> copyOf(const std::vector<Vec3>& x) {
-    RawVector<Vec3> copy(x.size());
+using Positions = RawVector<Vec3>;
+
+// One copy after another in the same memory.
+const Positions& copyTo(Positions& copy, const std::vector<Vec3>& x) {
+    copy.resize(x.size());
     parallelFor(x.size(), [&](std::size_t i) { copy[i] = x[i]; }, 8192);
     return copy;
 }
 
-Vec3 weightedMean(std::span<const BandEdge> edges, const RawVector<Vec3>& x) {
+Vec3 weightedMean(std::span<const BandEdge> edges, const Positions& x) {
     Vec3 sum;
     double weight = 0;
     for (const BandEdge& e : edges) {
@@ -47,7 +50,7 @@ Vec3 weightedMean(std::span<const BandEdge> edges, const RawVector<Vec3>& x) {
 }
 
 // Mean of the neighbours' moves: a lattice stays a lattice, whatever its levels.
-Vec3 meanMove(const Band& band, std::span<const BandEdge> edges, const RawVector<Vec3>& x) {
+Vec3 meanMove(const Band& band, std::span<const BandEdge> edges, const Positions& x) {
     Vec3 sum;
     double weight = 0;
     for (const BandEdge& e : edges) {
@@ -66,8 +69,8 @@ Vec3 stoppedByGeometry(const SurfaceIndex& index, const Vec3& from, const Vec3& 
 
 bool isFront(const Band& band, std::size_t n) { return n >= band.walls && n < band.walls + band.fronts; }
 
-void smoothSurface(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& start, std::vector<Vec3>& x) {
-    const RawVector<Vec3> old = copyOf(x);
+void smoothSurface(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& start, std::vector<Vec3>& x, Positions& copy) {
+    const Positions& old = copyTo(copy, x);
     parallelFor(band.fronts, [&](std::size_t i) {
         const std::size_t n = band.walls + i;
         Vec3 sum;
@@ -83,8 +86,8 @@ void smoothSurface(const Band& band, const SurfaceIndex& index, const std::vecto
     });
 }
 
-void projectWalls(const Band& band, const SurfaceIndex& index, std::vector<Vec3>& x, bool first) {
-    const RawVector<Vec3> old = copyOf(x);
+void projectWalls(const Band& band, const SurfaceIndex& index, std::vector<Vec3>& x, Positions& copy, bool first) {
+    const Positions& old = copyTo(copy, x);
     parallelFor(band.walls, [&](std::size_t b) {
         const Vec3& f = old[static_cast<std::size_t>(band.frontNode[b])];
         Vec3 q = f;
@@ -103,13 +106,14 @@ void projectWalls(const Band& band, const SurfaceIndex& index, std::vector<Vec3>
         // Seen from the fluid side: what the way from the front meets first hides what lies behind.
         const SegmentHit hit = index.firstHit(f, q);
         if (hit && band.outside[b] == 0) q = f + (q - f) * hit.t;
-        const ClosestPoint c = closestWithinSides(index, q, band.outside[b], 4 * band.reach[b]);
+        // Where the node stands now, on the geometry most often, bounds the search.
+        const ClosestPoint c = closestWithinSides(index, q, band.outside[b], std::min(4 * band.reach[b], 1.0001 * norm(q - old[b])));
         if (c) x[b] = c.point;
     });
 }
 
-void relaxVolume(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& start, std::vector<Vec3>& x) {
-    const RawVector<Vec3> old = copyOf(x);
+void relaxVolume(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& start, std::vector<Vec3>& x, Positions& copy) {
+    const Positions& old = copyTo(copy, x);
     parallelFor(band.movable - band.walls, [&](std::size_t i) {
         const std::size_t n = band.walls + i;
         const Vec3 to = isFront(band, n) ? weightedMean(band.edges[n], old) : band.start[n] + meanMove(band, band.edges[n], old);
@@ -117,7 +121,7 @@ void relaxVolume(const Band& band, const SurfaceIndex& index, const std::vector<
         x[n] = isFront(band, n) ? stoppedByGeometry(index, start[n], moved) : moved;
     });
     // Nodes that hang on a coarse edge or face stay on it; parents never hang themselves on the same level.
-    const RawVector<Vec3> relaxed = copyOf(x);
+    const Positions& relaxed = copyTo(copy, x);
     parallelFor(band.movable - band.walls, [&](std::size_t i) {
         const std::size_t n = band.walls + i;
         const std::span<const std::int32_t> parents = band.parents[n];
@@ -189,11 +193,12 @@ Vec3 seenFront(const SurfaceIndex& index, const Band& band, std::size_t wall, co
 
 std::vector<Vec3> goalPositions(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& start, int sweeps) {
     std::vector<Vec3> x = start;
-    smoothSurface(band, index, start, x);
-    projectWalls(band, index, x, true);
+    Positions copy;
+    smoothSurface(band, index, start, x, copy);
+    projectWalls(band, index, x, copy, true);
     for (int i = 0; i < sweeps; ++i) {
-        relaxVolume(band, index, start, x);
-        projectWalls(band, index, x, false);
+        relaxVolume(band, index, start, x, copy);
+        projectWalls(band, index, x, copy, false);
     }
     return x;
 }

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <libdeflate.h>
 #include <new>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -55,6 +56,21 @@ struct Inflater {
     ~Inflater() { inflateEnd(&stream); }
 };
 
+// All members of a compressed file, into so much room. Gives the size; 0: too little room, or something is wrong, which
+// zlib tells better.
+std::size_t inflateAll(std::string_view gz, char* out, std::size_t room) {
+    const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> decompressor(libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
+    if (!decompressor) throw std::bad_alloc();
+    std::size_t size = 0;
+    while (isGzip(gz)) { // padding after the last member is allowed
+        std::size_t in = 0, made = 0;
+        if (libdeflate_gzip_decompress_ex(decompressor.get(), gz.data(), gz.size(), out + size, room - size, &in, &made) != LIBDEFLATE_SUCCESS) return 0;
+        size += made;
+        gz.remove_prefix(in);
+    }
+    return size;
+}
+
 } // namespace
 
 void MappedFile::Free::operator()(char* p) const { std::free(p); }
@@ -88,10 +104,19 @@ MappedFile::~MappedFile() {
 }
 
 void MappedFile::inflate() {
-    const std::string_view gz = bytes_;
-    std::size_t capacity = std::max<std::size_t>(sizeHint(gz), 4 * gz.size()) + 64, size = 0, read = 0;
-    inflated_.reset(static_cast<char*>(std::malloc(capacity)));
+    const std::size_t room = std::max<std::size_t>(sizeHint(bytes_), 4 * bytes_.size()) + 64;
+    inflated_.reset(static_cast<char*>(std::malloc(room)));
     if (!inflated_) throw std::bad_alloc();
+    std::size_t size = inflateAll(bytes_, inflated_.get(), room);
+    if (size == 0) size = inflateStepwise(room);
+    bytes_ = {inflated_.get(), size};
+    ::munmap(map_, mapSize_);
+    map_ = nullptr;
+}
+
+std::size_t MappedFile::inflateStepwise(std::size_t capacity) {
+    const std::string_view gz = bytes_;
+    std::size_t size = 0, read = 0;
     Inflater inflater;
     z_stream& z = inflater.stream;
     constexpr std::size_t most = std::size_t{1} << 30; // zlib counts in 32 bits
@@ -124,9 +149,7 @@ void MappedFile::inflate() {
         }
     }
     if (size == 0) refuse(path_, "the compressed file holds nothing", "export it again");
-    bytes_ = {inflated_.get(), size};
-    ::munmap(map_, mapSize_);
-    map_ = nullptr;
+    return size;
 }
 
 void MappedFile::release(std::size_t begin, std::size_t end) const {

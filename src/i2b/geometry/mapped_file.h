@@ -25,6 +25,7 @@ class MappedFile {
 
   private:
     void inflate();
+    std::size_t inflateStepwise(std::size_t capacity); // in room that grows, telling what is wrong; gives the size
 
     struct Free {
         void operator()(char* p) const;
