@@ -2,6 +2,7 @@
 #include "i2b/quality/face_tets.h"
 #include "i2b/quality/measures.h"
 #include <algorithm>
+#include <numeric>
 
 namespace i2b {
 namespace {
@@ -79,7 +80,9 @@ void CellStar::take(const std::vector<std::int32_t>& points, const std::vector<s
     }
     shapes_.resize(faces_.size()), own_.resize(cells_.size());
     shapeTurn_.assign(faces_.size(), 0), ownTurn_.assign(cells_.size(), 0);
-    turn_ = 0, tetOrder_.clear(), critical_ = none;
+    order_.resize(cells_.size() + faces_.size());
+    std::iota(order_.begin(), order_.end(), 0);
+    turn_ = 0, summed_ = 0, tetOrder_.clear(), tetsSummed_ = 0, critical_ = none;
 }
 
 const FaceShape& CellStar::shapeOf(Index i) {
@@ -180,7 +183,25 @@ Vec3 CellStar::middleOf(std::int32_t point) const {
 }
 
 Badness CellStar::judge() {
-    return judge([](const Badness&) { return false; });
+    ++turn_;
+    std::vector<std::uint8_t> hasPart(order_.size(), 0);
+    Badness out;
+    for (std::uint32_t i = 0; i < order_.size(); ++i) {
+        const double before = out.sum;
+        look(i, out);
+        hasPart[i] = out.sum > before;
+    }
+    std::iota(order_.begin(), order_.end(), 0);
+    const auto rest = std::stable_partition(order_.begin(), order_.end(), [&](std::uint32_t i) { return hasPart[i] != 0; });
+    summed_ = static_cast<Index>(rest - order_.begin());
+    return out;
+}
+
+double CellStar::sumNearby() {
+    ++turn_;
+    Badness out;
+    for (Index i = 0; i < summed_; ++i) look(order_[i], out);
+    return out.sum;
 }
 
 Badness CellStar::judge(const Badness& before, double most) {
@@ -195,11 +216,10 @@ bool CellStar::mayStand(const Badness& before) {
     return !mayNot(judge(mayNot));
 }
 
-// All, cells first, or until it is too bad. What made it so in the last look is asked before: it often does so again.
+// All, in order, or until it is too bad. What made it so in the last look is asked before: it often does so again.
 template <class TooBad>
 Badness CellStar::judge(const TooBad& tooBad) {
     ++turn_;
-    const auto look = [&](Index i, Badness& out) { i < cells_.size() ? judgeCell(i, out) : judgeFace(i - cells_.size(), out); };
     if (critical_ != none) {
         Badness first;
         look(critical_, first);
@@ -208,7 +228,7 @@ Badness CellStar::judge(const TooBad& tooBad) {
     Badness out;
     Index worst = 0;
     double largest = -1;
-    for (Index i = 0; i < cells_.size() + faces_.size(); ++i) {
+    for (const std::uint32_t i : order_) {
         const double before = out.sum;
         look(i, out);
         if (out.sum - before > largest) largest = out.sum - before, worst = i;
@@ -219,25 +239,37 @@ Badness CellStar::judge(const TooBad& tooBad) {
     return out;
 }
 
+namespace {
+
+void addTets(TetLack& out, double share) {
+    if (share < leastTets) out.sum += (leastTets - share) * (leastTets - share);
+    out.undivided = out.undivided || share < undividedShare;
+}
+
+} // namespace
+
 TetLack CellStar::judgeTets(double most) {
     ++turn_;
     TetLack out;
-    const auto add = [&](double share) {
-        if (share < leastTets) out.sum += (leastTets - share) * (leastTets - share);
-        out.undivided = out.undivided || share < undividedShare;
-    };
     if (tetOrder_.empty()) {
         std::vector<std::pair<double, std::uint32_t>> shares(faces_.size());
         for (std::uint32_t i = 0; i < shares.size(); ++i) shares[i] = {tetShareOf(i), i};
         std::sort(shares.begin(), shares.end());
-        for (const auto& [share, i] : shares) tetOrder_.push_back(i), add(share);
+        for (const auto& [share, i] : shares) tetOrder_.push_back(i), addTets(out, share), tetsSummed_ += share < leastTets;
         return out;
     }
     for (const std::uint32_t i : tetOrder_) {
         if (!(out.sum < most)) break;
-        add(tetShareOf(i));
+        addTets(out, tetShareOf(i));
     }
     return out;
+}
+
+double CellStar::tetSumNearby() {
+    ++turn_;
+    TetLack out;
+    for (Index i = 0; i < tetsSummed_; ++i) addTets(out, tetShareOf(tetOrder_[i]));
+    return out.sum;
 }
 
 } // namespace i2b

@@ -45,6 +45,9 @@ class CellStar {
     Badness judge();
     // The same where it is no worse than before and of a sum under `most`; else some of it, which tells that it is not.
     Badness judge(const Badness& before, double most);
+    // After one of these, at a place close by: only what made up their sum, which is what a slope there takes.
+    double sumNearby();
+    double tetSumNearby();
     // Does a move for another thing's sake keep to the limits, or make nothing worse where they are broken already?
     bool mayStand(const Badness& before);
     // The same of tetrahedra, which are in no other figure. Looks no further where the sum comes to `most`.
@@ -64,6 +67,7 @@ class CellStar {
     void forEdgesAt(std::int32_t point, const F& f) const;
     void judgeCell(std::size_t i, Badness& out);
     void judgeFace(std::size_t i, Badness& out);
+    void look(std::size_t i, Badness& out) { i < cells_.size() ? judgeCell(i, out) : judgeFace(i - cells_.size(), out); }
     template <class TooBad>
     Badness judge(const TooBad& tooBad);
     double tetShareOf(std::size_t i);
@@ -90,6 +94,9 @@ class CellStar {
     std::uint32_t turn_ = 0;                           // counts the looks
     std::vector<std::uint32_t> shapeTurn_, ownTurn_;   // of what shapes_ and own_ hold; 0: nothing
     std::size_t critical_ = ~std::size_t(0);           // what made the last place too bad: a cell, or a face after all cells
+    std::vector<std::uint32_t> order_;                 // the same of all: what had a part in judge()'s sum comes first,
+    std::size_t summed_ = 0;                           // so many
+    std::size_t tetsSummed_ = 0;                       // the same of tetOrder_
     std::vector<std::uint32_t> tetOrder_;              // places in faces_: what lacked most in the first look comes first; or empty
 };
 

@@ -59,7 +59,7 @@ bool Optimiser::mendNode(const Task& task, Worker& worker) {
     if (before.sum == 0) return false;
     const Vec3 middle = worker.middle();
     const double h = nodes_.h(task.node);
-    const Vec3 down = worker.descent(before.sum, probe * h, outside, [&](const Vec3& to) { return worker.at(to).sum; });
+    const Vec3 down = worker.descent(before.sum, probe * h, outside, [&](const Vec3& to) { return worker.sumBeside(to); });
     const Hold hold = holdAt(task.node, from);
     Vec3 best = from;
     Badness least = before;

@@ -166,7 +166,7 @@ bool Optimiser::mendNodeTets(const Task& task, Worker& worker) {
     }
     if (least > enough * before.sum) {
         const double h = nodes_.h(task.node);
-        const Vec3 down = worker.descent(before.sum, probe * h, outside, [&](const Vec3& to) { return worker.tetsAt(to).sum; });
+        const Vec3 down = worker.descent(before.sum, probe * h, outside, [&](const Vec3& to) { return worker.tetSumBeside(to); });
         for (const double length : stepLengths) tryStep(down * (length * h));
         // Few faces come as far: their nodes try all ways round before they are given up.
         if (isLast_ && !(least < before.sum * (1 - leastGain))) {

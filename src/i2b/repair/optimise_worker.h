@@ -47,6 +47,15 @@ struct Optimiser::Worker {
         put(to);
         return star.judge(before, most);
     }
+    // Of the places that at() and tetsAt() were asked about first: the same sums a little beside, where nothing else comes in.
+    double sumBeside(const Vec3& to) {
+        put(to);
+        return star.sumNearby();
+    }
+    double tetSumBeside(const Vec3& to) {
+        put(to);
+        return star.tetSumNearby();
+    }
     bool mayStandAt(const Vec3& to, const Badness& before) {
         put(to);
         return star.mayStand(before);
