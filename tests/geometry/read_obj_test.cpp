@@ -79,6 +79,17 @@ TEST(ReadObj, Dialects) {
         sum);
 }
 
+// Proves: a compressed file may be of several members, padded, whose last one's trailer says little of the whole, and pack better than
+// room is made for at first.
+TEST(ReadObj, CompressedMembers) {
+    const TempFolder folder;
+    const std::string blank(1 << 20, '\n'), first = points + blank, last = "g x\nf 1 2 3 4\nf 1 2 5\n";
+    const std::uint64_t sum = read({folder.write("a.obj", first + last)}).surface.checksum();
+    EXPECT_EQ(read({folder.write("b.obj.gz", gzip(first) + gzip(last))}).surface.checksum(), sum);
+    EXPECT_EQ(read({folder.write("c.obj.gz", gzip(points) + gzip(last) + std::string(512, '\0'))}).surface.checksum(), read({folder.write("d.obj", points + last)}).surface.checksum());
+    EXPECT_EQ(read({folder.write("e.obj.gz", gzip(first + last))}).surface.checksum(), sum);
+}
+
 // Proves: triangles with no numbers go with their points, points of triangles too; faces may come before
 // their points.
 TEST(ReadObj, TrianglesThatCannotBeUsed) {

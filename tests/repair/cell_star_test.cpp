@@ -185,5 +185,52 @@ TEST(CellStar, FollowsItsPoint) {
     }
 }
 
+// Of a place close by, what made up the sums where the star was looked at first: there the same, beside it no more than all, and but for
+// what has come in since as much. Later looks at all, which ask that first, see what a star sees that is looked at there first.
+TEST(CellStar, SumsNearby) {
+    QualityLimits limits;
+    limits.nonOrthogonality = 20, limits.skewness = 0.5, limits.faceWeight = 0.4;
+    const std::int32_t point = 31; // an inner one
+    int faulty = 0;
+    for (unsigned seed = 0; seed < 100; ++seed) {
+        PolyMesh mesh = block(seed, 0.4);
+        const Rows cellFaces = buildCellFaces(mesh);
+        const MeshFaults faults(mesh, cellFaces, limits);
+        const auto starHere = [&] {
+            std::int32_t user = 0;
+            for (std::int32_t c = 0; c < mesh.cells; ++c)
+                for (const std::int32_t f : cellFaces[c])
+                    if (std::ranges::count(mesh.face(f), point) > 0) user = c;
+            CellStar star(mesh, cellFaces, faults.moments(), limits, mesh.cells);
+            star.gather({point}, {user});
+            return star;
+        };
+        CellStar star = starHere();
+        const double here = star.judge().sum, tets = star.judgeTets().sum;
+        EXPECT_NEAR(star.sumNearby(), here, 1e-12 * here);
+        EXPECT_NEAR(star.tetSumNearby(), tets, 1e-12 * tets);
+        faulty += here > 0 && tets > 0;
+        for (const double step : {1e-4, 0.1}) {
+            mesh.points[point] += Vec3{0.3, 0.8, -0.5} * step;
+            CellStar fresh = starHere();
+            const Badness all = fresh.judge();
+            const double allTets = fresh.judgeTets().sum;
+            EXPECT_LE(star.sumNearby(), all.sum * (1 + 1e-12));
+            EXPECT_LE(star.tetSumNearby(), allTets * (1 + 1e-12));
+            if (step < 1e-3) {
+                EXPECT_NEAR(star.sumNearby(), all.sum, 1e-6 * (1 + all.sum));
+                EXPECT_NEAR(star.tetSumNearby(), allTets, 1e-6);
+            }
+            Badness most;
+            most.worst = most.beyond = std::numeric_limits<double>::infinity(), most.invalid = true;
+            const Badness again = star.judge(most, std::numeric_limits<double>::infinity());
+            EXPECT_NEAR(again.sum, all.sum, 1e-12 * all.sum);
+            EXPECT_EQ(again.worst, all.worst);
+            EXPECT_EQ(again.invalid, all.invalid);
+        }
+    }
+    EXPECT_GT(faulty, 20);
+}
+
 } // namespace
 } // namespace i2b
