@@ -1,11 +1,10 @@
 #include "i2b/fit/blocks.h"
-#include "i2b/core/parallel.h"
+#include "i2b/core/parallel_turns.h"
 #include "i2b/fit/band.h"
 #include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <tbb/parallel_for_each.h>
 #include <tbb/parallel_sort.h>
 
 namespace i2b {
@@ -135,9 +134,7 @@ void NodeBlocks::sweep(std::span<const Kind> kinds, const Work& work) const {
     }
     for (std::size_t b = 0; b < blocks; ++b)
         if (beside_[b].earlier.empty()) first.push_back({static_cast<std::uint32_t>(b), 0});
-    const LoopFence fence;
-    tbb::parallel_for_each(first.begin(), first.end(), [&](const Turn& turn, tbb::feeder<Turn>& feeder) {
-        fence.enter();
+    parallelTurns(first, [&](const Turn& turn, tbb::feeder<Turn>& feeder) {
         waits[turn.step * blocks + turn.block].load(std::memory_order_acquire); // whoever works on it sees what those before have done
         work(turn.block, kinds[turn.step]);
         const auto countDown = [&](std::uint32_t block, std::size_t step) {
@@ -146,9 +143,7 @@ void NodeBlocks::sweep(std::span<const Kind> kinds, const Work& work) const {
         for (const std::uint32_t other : beside_[turn.block].later) countDown(other, turn.step);
         countDown(turn.block, turn.step + 1);
         for (const std::uint32_t other : beside_[turn.block].earlier) countDown(other, turn.step + 1);
-        fence.leave();
     });
-    fence.join();
 }
 
 } // namespace i2b
