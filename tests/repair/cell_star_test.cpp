@@ -28,6 +28,14 @@ Badness judgeAll(const PolyMesh& mesh, const QualityLimits& limits, std::int32_t
     return star.judge();
 }
 
+// One that uses the point.
+std::int32_t cellAt(const PolyMesh& mesh, const Rows& cellFaces, std::int32_t point) {
+    for (std::int32_t c = 0; c < mesh.cells; ++c)
+        for (const std::int32_t f : cellFaces[c])
+            if (std::ranges::count(mesh.face(f), point) > 0) return c;
+    return -1;
+}
+
 double orthoShare(double degrees, double limit) {
     constexpr double degree = std::numbers::pi / 180;
     return (1 - std::cos(degrees * degree)) / (1 - std::cos(limit * degree));
@@ -124,11 +132,7 @@ TEST(CellStar, MayNotTradeLowPyramidsForFaults) {
         const MeshFaults faults(mesh, cellFaces, limits);
         CellStar star(mesh, cellFaces, faults.moments(), limits, 0);
         const std::int32_t point = 31; // an inner one
-        std::int32_t user = 0;
-        for (std::int32_t c = 0; c < mesh.cells; ++c)
-            for (const std::int32_t f : cellFaces[c])
-                if (std::ranges::count(mesh.face(f), point) > 0) user = c;
-        star.gather({point}, {user});
+        star.gather({point}, {cellAt(mesh, cellFaces, point)});
         const Badness before = star.judge();
         const Vec3 from = mesh.points[point];
         for (int i = 0; i < 100; ++i) {
@@ -197,12 +201,8 @@ TEST(CellStar, SumsNearby) {
         const Rows cellFaces = buildCellFaces(mesh);
         const MeshFaults faults(mesh, cellFaces, limits);
         const auto starHere = [&] {
-            std::int32_t user = 0;
-            for (std::int32_t c = 0; c < mesh.cells; ++c)
-                for (const std::int32_t f : cellFaces[c])
-                    if (std::ranges::count(mesh.face(f), point) > 0) user = c;
             CellStar star(mesh, cellFaces, faults.moments(), limits, mesh.cells);
-            star.gather({point}, {user});
+            star.gather({point}, {cellAt(mesh, cellFaces, point)});
             return star;
         };
         CellStar star = starHere();

@@ -106,8 +106,9 @@ void projectWalls(const Band& band, const SurfaceIndex& index, std::vector<Vec3>
         // Seen from the fluid side: what the way from the front meets first hides what lies behind.
         const SegmentHit hit = index.firstHit(f, q);
         if (hit && band.outside[b] == 0) q = f + (q - f) * hit.t;
-        // Where the node stands now, on the geometry most often, bounds the search.
-        const ClosestPoint c = closestWithinSides(index, q, band.outside[b], std::min(4 * band.reach[b], 1.0001 * norm(q - old[b])));
+        // From the second time on the node stands on the geometry, which bounds the search.
+        const double reach = first ? 4 * band.reach[b] : std::min(4 * band.reach[b], 1.0001 * norm(q - old[b]));
+        const ClosestPoint c = closestWithinSides(index, q, band.outside[b], reach);
         if (c) x[b] = c.point;
     });
 }

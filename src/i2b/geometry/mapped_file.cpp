@@ -1,6 +1,7 @@
 #include "i2b/geometry/mapped_file.h"
 #include "i2b/core/error.h"
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -56,19 +57,27 @@ struct Inflater {
     ~Inflater() { inflateEnd(&stream); }
 };
 
-// All members of a compressed file, into so much room. Gives the size; 0: too little room, or something is wrong, which
-// zlib tells better.
-std::size_t inflateAll(std::string_view gz, char* out, std::size_t room) {
-    const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> decompressor(libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
-    if (!decompressor) throw std::bad_alloc();
-    std::size_t size = 0;
-    while (isGzip(gz)) { // padding after the last member is allowed
-        std::size_t in = 0, made = 0;
-        if (libdeflate_gzip_decompress_ex(decompressor.get(), gz.data(), gz.size(), out + size, room - size, &in, &made) != LIBDEFLATE_SUCCESS) return 0;
-        size += made;
-        gz.remove_prefix(in);
+// What is wrong with a compressed file and where, which zlib tells.
+[[noreturn]] void refuseDamaged(const std::string& path, std::string_view gz) {
+    Inflater inflater;
+    z_stream& z = inflater.stream;
+    constexpr std::size_t most = std::size_t{1} << 30; // zlib counts in 32 bits
+    std::array<Bytef, 1 << 16> scratch;
+    std::size_t read = 0;
+    for (;;) {
+        const std::size_t in = std::min(most, gz.size() - read);
+        z.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(gz.data() + read));
+        z.avail_in = static_cast<uInt>(in);
+        z.next_out = scratch.data();
+        z.avail_out = static_cast<uInt>(scratch.size());
+        const int status = ::inflate(&z, Z_NO_FLUSH);
+        read += in - z.avail_in;
+        if (status == Z_MEM_ERROR) throw std::bad_alloc();
+        if (status == Z_STREAM_END && isGzip(gz.substr(read))) inflateReset(&z);
+        else if (status == Z_BUF_ERROR && z.avail_out != 0) // room to write, nothing left to read
+            refuse(path, fmt::format("the compressed file is truncated: its {} bytes end early", gz.size()), "copy it again");
+        else if (status != Z_OK && status != Z_BUF_ERROR) refuse(path, fmt::format("the compressed file is damaged near byte {}", read), "copy it again");
     }
-    return size;
 }
 
 } // namespace
@@ -104,52 +113,32 @@ MappedFile::~MappedFile() {
 }
 
 void MappedFile::inflate() {
-    const std::size_t room = std::max<std::size_t>(sizeHint(bytes_), 4 * bytes_.size()) + 64;
-    inflated_.reset(static_cast<char*>(std::malloc(room)));
-    if (!inflated_) throw std::bad_alloc();
-    std::size_t size = inflateAll(bytes_, inflated_.get(), room);
-    if (size == 0) size = inflateStepwise(room);
+    const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> decompressor(libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
+    if (!decompressor) throw std::bad_alloc();
+    std::size_t room = 0, size = 0;
+    const auto makeRoom = [&](std::size_t wanted) {
+        char* const grown = static_cast<char*>(std::realloc(inflated_.get(), wanted));
+        if (!grown) throw std::bad_alloc();
+        static_cast<void>(inflated_.release()); // realloc has freed it
+        inflated_.reset(grown);
+        room = wanted;
+    };
+    makeRoom(std::max<std::size_t>(sizeHint(bytes_), 4 * bytes_.size()) + 64);
+    for (std::string_view gz = bytes_; isGzip(gz);) { // member after member; padding after the last one is allowed
+        std::size_t in = 0, made = 0;
+        const libdeflate_result result = libdeflate_gzip_decompress_ex(decompressor.get(), gz.data(), gz.size(), inflated_.get() + size, room - size, &in, &made);
+        if (result == LIBDEFLATE_INSUFFICIENT_SPACE) {
+            makeRoom(2 * room); // for the same one again
+            continue;
+        }
+        if (result != LIBDEFLATE_SUCCESS) refuseDamaged(path_, bytes_);
+        size += made;
+        gz.remove_prefix(in);
+    }
+    if (size == 0) refuse(path_, "the compressed file holds nothing", "export it again");
     bytes_ = {inflated_.get(), size};
     ::munmap(map_, mapSize_);
     map_ = nullptr;
-}
-
-std::size_t MappedFile::inflateStepwise(std::size_t capacity) {
-    const std::string_view gz = bytes_;
-    std::size_t size = 0, read = 0;
-    Inflater inflater;
-    z_stream& z = inflater.stream;
-    constexpr std::size_t most = std::size_t{1} << 30; // zlib counts in 32 bits
-    for (;;) {
-        if (size == capacity) {
-            capacity += capacity / 2;
-            char* const grown = static_cast<char*>(std::realloc(inflated_.get(), capacity));
-            if (!grown) throw std::bad_alloc();
-            static_cast<void>(inflated_.release()); // realloc has freed it
-            inflated_.reset(grown);
-        }
-        const std::size_t in = std::min(most, gz.size() - read), out = std::min(most, capacity - size);
-        z.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(gz.data() + read));
-        z.avail_in = static_cast<uInt>(in);
-        z.next_out = reinterpret_cast<Bytef*>(inflated_.get() + size);
-        z.avail_out = static_cast<uInt>(out);
-        const int status = ::inflate(&z, Z_NO_FLUSH);
-        read += in - z.avail_in;
-        size += out - z.avail_out;
-        if (status == Z_STREAM_END) {
-            if (!isGzip(gz.substr(read))) break; // padding after the last member is allowed
-            inflateReset(&z);
-        } else if (status == Z_MEM_ERROR) {
-            throw std::bad_alloc();
-        } else if (status == Z_BUF_ERROR && z.avail_out != 0) { // room to write, nothing left to read
-            refuse(path_, fmt::format("the compressed file is truncated: its {} bytes end early", gz.size()),
-                   "copy it again");
-        } else if (status != Z_OK && status != Z_BUF_ERROR) {
-            refuse(path_, fmt::format("the compressed file is damaged near byte {}", read), "copy it again");
-        }
-    }
-    if (size == 0) refuse(path_, "the compressed file holds nothing", "export it again");
-    return size;
 }
 
 void MappedFile::release(std::size_t begin, std::size_t end) const {

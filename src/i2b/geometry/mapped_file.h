@@ -25,7 +25,6 @@ class MappedFile {
 
   private:
     void inflate();
-    std::size_t inflateStepwise(std::size_t capacity); // in room that grows, telling what is wrong; gives the size
 
     struct Free {
         void operator()(char* p) const;

@@ -24,17 +24,19 @@ struct BuildNode {
 
 const BuildLeaf* leafOf(std::uintptr_t child) { return child & 1 ? reinterpret_cast<const BuildLeaf*>(child - 1) : nullptr; }
 
-// The user's pointer of these is the fence that tells the thread checker when they are done.
+// The user's pointer of what follows is the fence that tells the thread checker when they are done.
+void leave(void* fence) { static_cast<const LoopFence*>(fence)->leave(); }
+
 void* createNode(RTCThreadLocalAllocator allocator, unsigned, void* fence) {
     auto* const node = new (rtcThreadLocalAlloc(allocator, sizeof(BuildNode), 16)) BuildNode;
-    static_cast<const LoopFence*>(fence)->leave();
+    leave(fence);
     return node;
 }
 void setChildren(void* node, void** children, unsigned count, void* fence) {
     auto* n = static_cast<BuildNode*>(node);
     n->children = count;
     for (unsigned i = 0; i < count; ++i) n->child[i] = reinterpret_cast<std::uintptr_t>(children[i]);
-    static_cast<const LoopFence*>(fence)->leave();
+    leave(fence);
 }
 void setBounds(void* node, const RTCBounds** bounds, unsigned count, void* fence) {
     auto* n = static_cast<BuildNode*>(node);
@@ -43,14 +45,14 @@ void setBounds(void* node, const RTCBounds** bounds, unsigned count, void* fence
         n->lo[0][i] = b.lower_x, n->lo[1][i] = b.lower_y, n->lo[2][i] = b.lower_z;
         n->hi[0][i] = b.upper_x, n->hi[1][i] = b.upper_y, n->hi[2][i] = b.upper_z;
     }
-    static_cast<const LoopFence*>(fence)->leave();
+    leave(fence);
 }
 void* createLeaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, std::size_t count,
                  void* fence) {
     auto* leaf = new (rtcThreadLocalAlloc(allocator, sizeof(BuildLeaf), 16)) BuildLeaf;
     leaf->count = static_cast<std::uint32_t>(count);
     for (std::size_t i = 0; i < count; ++i) leaf->triangles[i] = primitives[i].primID;
-    static_cast<const LoopFence*>(fence)->leave();
+    leave(fence);
     return reinterpret_cast<char*>(leaf) + 1;
 }
 

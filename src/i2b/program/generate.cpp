@@ -107,6 +107,7 @@ void judge(MeshResult& out, const FeatureGraph& features, const FitSummary& fitt
         sum.add(out.mesh.checksum());
         fence.leave();
     });
+    out.cells.wantsQuality = keepCells;
     out.report.quality = stage(
         context, "quality", [&] { return measureQuality(out.mesh, {}, limits, &out.cells); },
         [](const QualityReport& q) { return q.cells; });

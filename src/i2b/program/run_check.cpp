@@ -46,12 +46,11 @@ int runCheck(const CommandLine& line, Run& run) {
     }
     const std::vector<std::string> patches = patchesNamed(mesh.patches, line.patches); // complains before the work
     const bool hasGeometry = !line.given.options.geometry.files.empty();
-    CellFigures cells; // where the fit is asked for
+    CellFigures cells{.wantsQuality = false}; // where the fit is asked for
     QualityReport quality;
     {
         Stage stage(run.context, "quality");
         quality = measureQuality(mesh, {}, line.given.options.quality, hasGeometry ? &cells : nullptr);
-        cells.quality = {};
         stage.items = static_cast<std::uint64_t>(mesh.cells);
     }
     fmt::print(run.out, "{}", formatQuality(quality));

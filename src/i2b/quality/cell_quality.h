@@ -14,8 +14,9 @@ struct CellQuality {                     // one value per cell each
 
 // What measureQuality() has worked out of single cells on its way, for whoever asks.
 struct CellFigures {
-    Rows faces; // buildCellFaces()
-    CellQuality quality;
+    bool wantsQuality = true;
+    Rows faces{};          // buildCellFaces()
+    CellQuality quality{}; // if wanted; else empty
 };
 
 // Gathers the worst of each cell's faces; faces may come in any order and from any thread.

@@ -92,9 +92,9 @@ QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits, 
     if (left) left->faces = std::move(m.cellFaces);
     m.cellFaces = {};
     std::optional<CellQualityMaker> shown;
-    if (left) m.shown = &shown.emplace(m.moments);
+    if (left && left->wantsQuality) m.shown = &shown.emplace(m.moments);
     measureFaces(m);
-    if (left) left->quality = shown->take();
+    if (shown) left->quality = shown->take();
     measureRegions(m);
     measurePatches(m);
     const Rows pointFaces = buildPointFaces(mesh);

@@ -184,16 +184,15 @@ Vec3 CellStar::middleOf(std::int32_t point) const {
 
 Badness CellStar::judge() {
     ++turn_;
-    std::vector<std::uint8_t> hasPart(order_.size(), 0);
+    order_.clear(), rest_.clear();
     Badness out;
-    for (std::uint32_t i = 0; i < order_.size(); ++i) {
+    for (std::uint32_t i = 0; i < cells_.size() + faces_.size(); ++i) {
         const double before = out.sum;
         look(i, out);
-        hasPart[i] = out.sum > before;
+        (out.sum > before ? order_ : rest_).push_back(i);
     }
-    std::iota(order_.begin(), order_.end(), 0);
-    const auto rest = std::stable_partition(order_.begin(), order_.end(), [&](std::uint32_t i) { return hasPart[i] != 0; });
-    summed_ = static_cast<Index>(rest - order_.begin());
+    summed_ = order_.size();
+    order_.insert(order_.end(), rest_.begin(), rest_.end());
     return out;
 }
 

@@ -45,13 +45,13 @@ class CellStar {
     Badness judge();
     // The same where it is no worse than before and of a sum under `most`; else some of it, which tells that it is not.
     Badness judge(const Badness& before, double most);
-    // After one of these, at a place close by: only what made up their sum, which is what a slope there takes.
-    double sumNearby();
-    double tetSumNearby();
     // Does a move for another thing's sake keep to the limits, or make nothing worse where they are broken already?
     bool mayStand(const Badness& before);
     // The same of tetrahedra, which are in no other figure. Looks no further where the sum comes to `most`.
     TetLack judgeTets(double most = std::numeric_limits<double>::infinity());
+    // After judge(), and after the first judgeTets(), at a place close by: of what had a part in their sum alone, as slopes take it.
+    double sumNearby();
+    double tetSumNearby();
     // m, of the edges that end at the point, one of those gathered.
     double shortestEdgeAt(std::int32_t point) const;
     // Mean of the other ends of these edges, each as often as faces have it.
@@ -94,8 +94,8 @@ class CellStar {
     std::uint32_t turn_ = 0;                           // counts the looks
     std::vector<std::uint32_t> shapeTurn_, ownTurn_;   // of what shapes_ and own_ hold; 0: nothing
     std::size_t critical_ = ~std::size_t(0);           // what made the last place too bad: a cell, or a face after all cells
-    std::vector<std::uint32_t> order_;                 // the same of all: what had a part in judge()'s sum comes first,
-    std::size_t summed_ = 0;                           // so many
+    std::vector<std::uint32_t> order_, rest_;          // all, numbered so: what had a part in judge()'s sum comes first,
+    std::size_t summed_ = 0;                           // so many; rest_: for judge() alone
     std::size_t tetsSummed_ = 0;                       // the same of tetOrder_
     std::vector<std::uint32_t> tetOrder_;              // places in faces_: what lacked most in the first look comes first; or empty
 };

@@ -176,16 +176,12 @@ class BandBuilder {
             std::vector<std::vector<std::pair<openvdb::Index, Side>>> found(leaves_.size());
             parallelFor(
                 leaves_.size(), [&](std::size_t i) { sweepBlock(i, found[i]); }, 4);
-            bool any = false;
-            for (std::size_t i = 0; i < found.size(); ++i) {
-                blocks_[i].fresh.setOff();
-                for (const auto& [n, side] : found[i]) {
-                    blocks_[i].side[n] = side;
-                    blocks_[i].fresh.setOn(n), blocks_[i].open.setOff(n);
-                    any = true;
-                }
-            }
-            if (!any) return;
+            if (std::ranges::all_of(found, [](const auto& block) { return block.empty(); })) return;
+            parallelFor(found.size(), [&](std::size_t i) {
+                Block& block = blocks_[i];
+                block.fresh.setOff();
+                for (const auto& [n, side] : found[i]) block.side[n] = side, block.fresh.setOn(n), block.open.setOff(n);
+            });
         }
     }
 
