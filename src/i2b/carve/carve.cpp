@@ -84,11 +84,12 @@ Carved carveRegion(const CellGrid& grid, const CutCells& cut, const Regions& reg
         std::vector<Place> inPassages = passageCells(room);
         while (islands.bringBack(result.cells, inPassages)) inPassages = passageCells(room);
         give(result.cells, inPassages);
-        const std::vector<Place> inGaps = gapCells(room);
-        give(result.cells, inGaps);
-        islands.bringBack(result.cells, inGaps);
+        const GapFilling inGaps = fillGaps(room);
+        removeCells(result.cells, inGaps.displaced);
+        give(result.cells, inGaps.given);
+        islands.bringBack(result.cells, inGaps.given);
         const ShapingSummary shaped = makeExtrudable(result.cells, grid, index, &room);
-        result.given = inPassages.size() + inGaps.size() + shaped.added;
+        result.given = inPassages.size() + inGaps.given.size() - inGaps.displaced.size() + shaped.added;
         result.front = shaped.removed;
     } else {
         result.front = makeExtrudable(result.cells, grid, index, nullptr).removed;

@@ -15,9 +15,16 @@ struct Toggle {
     bool add = false;
     int gain = 0;          // faults fewer
     double clearance = 0;  // m, from the cell's centre to the geometry
+    Displaced displaced{}; // kept cells that go besides
+    std::vector<Place> cells() const {
+        std::vector<Place> all{cell};
+        all.insert(all.end(), displaced.begin(), displaced.end());
+        return all;
+    }
     friend bool operator<(const Toggle& a, const Toggle& b) {
         if (a.gain != b.gain) return a.gain > b.gain;
         if (a.add != b.add) return a.add;
+        if (a.displaced.count != b.displaced.count) return a.displaced.count < b.displaced.count;
         if (a.clearance != b.clearance) return a.add ? a.clearance > b.clearance : a.clearance < b.clearance;
         return a.cell < b.cell;
     }
@@ -63,7 +70,9 @@ VertexView Shaper::view(const Place& v, VertexLookup& lookup, const Toggle* togg
     int kept = 0;
     for (std::size_t o = 0; o < 8; ++o) {
         Octant& octant = view.octants[o];
-        if (octant.level == toggle->cell.level && octant.cell == toggle->cell.at) octant.kept = toggle->add;
+        const Place at{octant.level, octant.cell};
+        if (at == toggle->cell) octant.kept = toggle->add;
+        else if (std::find(toggle->displaced.begin(), toggle->displaced.end(), at) != toggle->displaced.end()) octant.kept = false;
         kept |= int(octant.kept) << o;
     }
     view.kept = view.outside ? mirrored(static_cast<std::uint8_t>(kept), view.outside) : static_cast<std::uint8_t>(kept);
@@ -114,7 +123,7 @@ bool Shaper::tears(Alternation alternation, const Place& v, const Place& end) co
 
 int Shaper::gainOf(const Toggle& toggle, VertexLookup& lookup) const {
     int gain = 0;
-    for (const Place& v : verticesOf({toggle.cell}, lookup, grid_)) gain += faults(v, lookup, nullptr) - faults(v, lookup, &toggle);
+    for (const Place& v : verticesOf(toggle.cells(), lookup, grid_)) gain += faults(v, lookup, nullptr) - faults(v, lookup, &toggle);
     return gain;
 }
 
@@ -127,7 +136,7 @@ Toggle Shaper::bestToggle(const Place& v, VertexLookup& lookup) const {
         const Place cell{o.level, o.cell};
         if (o.level < 0 || !seen.insert(cell).second) continue;
         Toggle t{cell, !o.kept, 0, 0};
-        if (t.add && (!room_ || gone_.count(cell) || !room_->mayJoin(cell, t.clearance))) continue;
+        if (t.add && (!room_ || gone_.count(cell) || !room_->mayJoin(cell, t.clearance, t.displaced))) continue;
         t.gain = gainOf(t, lookup);
         if (t.gain <= 0) continue;
         if (!t.add) t.clearance = clearanceOf(cell);
@@ -212,15 +221,16 @@ std::vector<Place> Shaper::improve(const std::vector<Place>& bad) {
     });
     std::erase_if(toggles, [](const Toggle& t) { return t.gain <= 0; });
     std::sort(toggles.begin(), toggles.end());
-    struct Sight { std::vector<Place> own, near; }; // vertices of the cell, and those one edge further: faults look that far
+    struct Sight { std::vector<Place> own, near; }; // vertices of the cells, and those one edge further: faults look that far
     std::vector<Sight> sights(toggles.size());
     parallelChunks(toggles.size(), 4, [&](std::size_t begin, std::size_t end, std::size_t) {
         VertexLookup lookup(grid_, kept_);
         for (std::size_t i = begin; i < end; ++i) {
             std::vector<Place> around;
-            cellsAround(toggles[i].cell, lookup, around);
+            const std::vector<Place> cells = toggles[i].cells();
+            for (const Place& cell : cells) cellsAround(cell, lookup, around);
             sortUnique(around);
-            sights[i] = {verticesOf({toggles[i].cell}, lookup, grid_), verticesOf(around, lookup, grid_)};
+            sights[i] = {verticesOf(cells, lookup, grid_), verticesOf(around, lookup, grid_)};
         }
     });
     std::set<Place> near;
@@ -236,6 +246,11 @@ std::vector<Place> Shaper::improve(const std::vector<Place>& bad) {
         set(t.cell, t.add);
         (t.add ? summary_.added : summary_.removed) += 1;
         changed.push_back(t.cell);
+        for (const Place& cell : t.displaced) {
+            set(cell, false);
+            ++summary_.removed;
+            changed.push_back(cell);
+        }
     }
     return changed;
 }

@@ -1,22 +1,26 @@
 #include "i2b/carve/gaps.h"
 #include "i2b/carve/min_cut.h"
 #include "i2b/core/parallel.h"
+#include "i2b/core/sort_unique.h"
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace i2b {
 namespace {
 
-constexpr double pricesPerFace = 1000; // prices of the cut are whole numbers
-constexpr double tie = 0.05;           // of a face: what is as good filled as not is filled
+constexpr long face = 1000; // price: those of the cut are whole numbers
+constexpr long tie = 50;    // what is as good filled as not is filled
 
 // A removed cell that has been looked at. Where its centre lies in no gap it is closed on all sides.
 struct GapCell {
     Place cell;
     double clearance = 0;      // of h
-    std::uint8_t open = 0;     // bit a direction: a kept neighbour there would have a face into the gap
+    std::uint8_t open = 0;     // bit a direction: a neighbour there would have a face into the gap, if it is given back
+    bool isCovered = false;    // but not if it is kept
     std::uint8_t walled = 0;   // bit a direction: a wall stands between the two centres
     bool fits = false;         // may be given back
+    Displaced displaced{};     // kept cells that go then
     friend bool operator<(const GapCell& a, const GapCell& b) { return a.cell < b.cell; }
 };
 
@@ -25,7 +29,7 @@ bool has(std::uint8_t bits, int direction) { return (bits >> direction & 1) != 0
 class GapFiller {
   public:
     GapFiller(const Room& room, const GapOptions& options) : room_(room), options_(options) {}
-    std::vector<Place> run();
+    GapFilling run();
 
   private:
     GapCell look(const Place& c) const;
@@ -40,7 +44,7 @@ class GapFiller {
         const GapCell* cell = find(removed);
         return cell && has(cell->open, direction);
     }
-    std::vector<Place> cut() const;
+    GapFilling cut() const;
 
     const Room& room_;
     const GapOptions options_;
@@ -51,13 +55,14 @@ GapCell GapFiller::look(const Place& c) const {
     GapCell cell{c};
     const WallsAround walls = room_.wallsAround(c);
     cell.clearance = walls.clearance;
-    if (!walls.isOpposite || room_.isKeptAt(c, walls.toWall * -options_.across)) return cell;
-    cell.fits = walls.clearance >= options_.least;
+    if (!walls.isOpposite) return cell;
+    cell.isCovered = room_.isKeptAt(c, walls.toWall * -options_.across);
+    cell.fits = walls.clearance >= options_.least && walls.width >= options_.width;
     for (int d = 0; d < 6; ++d) {
         const Place n = faceNeighbour(c, d);
         if (room_.isWallBetween(c, n)) {
             cell.walled |= std::uint8_t(1 << d);
-            cell.fits = cell.fits && !room_.isKept(n);
+            cell.fits = cell.fits && (!room_.isKept(n) || room_.displace(n, cell.displaced));
             continue;
         }
         // However narrow the crack that leads there: paint decides which regions are meshed.
@@ -88,21 +93,21 @@ std::vector<Place> GapFiller::look(const std::vector<Place>& places) {
     return next;
 }
 
-// Of two cells with a wall between them the one with more room may be given back.
+// Of two cells with a wall between them one may be given back: the one that displaces fewer, or has more room.
 void GapFiller::partWalled() {
+    const auto rank = [](const GapCell& cell) { return std::tuple(cell.displaced.count, -cell.clearance, cell.cell); };
     std::vector<std::uint8_t> goes(cells_.size(), 0);
     parallelFor(cells_.size(), [&](std::size_t i) {
         const GapCell& cell = cells_[i];
         for (int d = 0; cell.fits && d < 6; ++d) {
             const GapCell* other = has(cell.walled, d) ? find(faceNeighbour(cell.cell, d)) : nullptr;
-            if (!other || !other->fits) continue;
-            if (cell.clearance < other->clearance || (cell.clearance == other->clearance && other->cell < cell.cell)) goes[i] = 1;
+            if (other && other->fits && rank(*other) < rank(cell)) goes[i] = 1;
         }
     });
     for (std::size_t i = 0; i < cells_.size(); ++i) cells_[i].fits = cells_[i].fits && !goes[i];
 }
 
-std::vector<Place> GapFiller::cut() const {
+GapFilling GapFiller::cut() const {
     std::vector<const GapCell*> items;
     for (const GapCell& cell : cells_) {
         if (cell.fits) items.push_back(&cell);
@@ -111,34 +116,36 @@ std::vector<Place> GapFiller::cut() const {
         const auto at = std::lower_bound(items.begin(), items.end(), c, [](const GapCell* a, const Place& b) { return a->cell < b; });
         return at != items.end() && (*at)->cell == c ? std::size_t(at - items.begin()) : items.size();
     };
-    constexpr auto face = static_cast<long>(pricesPerFace);
+    const long displacing = std::lround(options_.displaced * double(face));
     MinCut cut(items.size());
     for (std::size_t i = 0; i < items.size(); ++i) {
         const GapCell& cell = *items[i];
-        const double squeeze = std::max(0.0, options_.ample - cell.clearance) / options_.ample;
-        cut.addTaken(i, std::lround(pricesPerFace * options_.squeezed * squeeze));
-        cut.addLeft(i, std::lround(pricesPerFace * tie));
+        cut.addTaken(i, displacing * cell.displaced.count);
+        if (!cell.isCovered) cut.addLeft(i, tie);
         for (int d = 0; d < 6; ++d) {
             const Place n = faceNeighbour(cell.cell, d);
             const long into = isOpen(n, d ^ 1) ? face : 0, from = has(cell.open, d) ? face : 0;
             if (const std::size_t other = itemOf(n); other < items.size()) {
                 if (other > i) cut.addPair(i, other, into, from);
             } else if (room_.isKept(n)) {
-                cut.addLeft(i, from);
+                if (!cell.isCovered) cut.addLeft(i, from);
             } else {
                 cut.addTaken(i, into);
             }
         }
     }
     const std::vector<unsigned char> taken = cut.solve();
-    std::vector<Place> given;
+    GapFilling filling;
     for (std::size_t i = 0; i < items.size(); ++i) {
-        if (taken[i]) given.push_back(items[i]->cell);
+        if (!taken[i]) continue;
+        filling.given.push_back(items[i]->cell);
+        filling.displaced.insert(filling.displaced.end(), items[i]->displaced.begin(), items[i]->displaced.end());
     }
-    return given;
+    sortUnique(filling.displaced);
+    return filling;
 }
 
-std::vector<Place> GapFiller::run() {
+GapFilling GapFiller::run() {
     std::vector<Place> places = besideKept(room_);
     for (int step = 0; step < options_.depth && !places.empty(); ++step) places = look(places);
     partWalled();
@@ -147,6 +154,6 @@ std::vector<Place> GapFiller::run() {
 
 } // namespace
 
-std::vector<Place> gapCells(const Room& room, const GapOptions& options) { return GapFiller(room, options).run(); }
+GapFilling fillGaps(const Room& room, const GapOptions& options) { return GapFiller(room, options).run(); }
 
 } // namespace i2b

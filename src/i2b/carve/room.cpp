@@ -57,10 +57,11 @@ bool Room::touchesTaken(const Place& c) const {
 WallsAround Room::wallsAround(const Place& c) const {
     const Vec3 from = centre(c);
     const ClosestPoint near = index_.closest(from, options_.gapWidth * h(c));
-    if (!near) return {options_.gapWidth, {}, false};
-    WallsAround walls{near.distance / h(c), normalized(near.point - from), false};
+    if (!near) return {options_.gapWidth, {}};
+    WallsAround walls{near.distance / h(c), normalized(near.point - from)};
     const SegmentHit hit = index_.firstHit(from, from - walls.toWall * (options_.gapWidth * h(c)));
     walls.isOpposite = hit && std::abs(dot(index_.normal(hit.triangle), walls.toWall)) > options_.facing;
+    if (walls.isOpposite) walls.width = walls.clearance + hit.t * options_.gapWidth;
     return walls;
 }
 
@@ -106,7 +107,13 @@ bool Room::isInTheOpen(const Place& c) const {
     return kept > options_.tuckedAway;
 }
 
-bool Room::mayJoin(const Place& c, double& clearance) const {
+bool Room::displace(const Place& kept, Displaced& displaced) const {
+    if (std::size_t(displaced.count) == displaced.cells.size() || !isOn(candidates_, kept) || wallsAround(kept).isOpposite) return false;
+    displaced.cells[std::size_t(displaced.count++)] = kept;
+    return true;
+}
+
+bool Room::mayJoin(const Place& c, double& clearance, Displaced& displaced) const {
     if (!isCandidate(c) || isKept(c)) return false;
     clearance = distance(c);
     if (clearance < options_.squeezed * h(c) || !isFree(c)) return false;
@@ -115,8 +122,10 @@ bool Room::mayJoin(const Place& c, double& clearance) const {
     for (int d = 0; d < 6; ++d) {
         const Place n = faceNeighbour(c, d);
         const bool kept = isKept(n);
-        if ((kept || isForeign(n)) && isWallBetween(n, c) == kept) return false;
-        joined = joined || kept;
+        if (!kept && !isForeign(n)) continue;
+        const bool walled = isWallBetween(n, c);
+        if (kept ? walled && !displace(n, displaced) : !walled) return false;
+        joined = joined || (kept && !walled);
     }
     return joined;
 }

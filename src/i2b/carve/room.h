@@ -12,7 +12,7 @@ struct RoomOptions {
     double rim = 0.2;                          // of h: least distance from a given cell's centre to the geometry
     double centre = 0.24;                      // of h: the same where others are reached from it
     std::array<double, 3> way{0.25, 0.25, 0.2}; // of h: least distance to the geometry at quarters of a way between centres
-    double squeezed = 0.05;                    // of h: least distance from a cell's centre to the geometry where a front needs it
+    double squeezed = 0.001;                   // of h: the same where a gap or a front needs it: on which side the centre is must be sure
     int tuckedAway = 13;                       // kept ones of the 26 cells around, at most, for a cell with less room than rim
     double gapWidth = 2;                       // of h: from a cell's centre to a wall that faces the nearest one
     double facing = 0.5;                       // cosine of the angle to its normal, at most, under which a wall is met that faces another
@@ -23,7 +23,16 @@ struct RoomOptions {
 struct WallsAround {
     double clearance = 0;  // of h: to the nearest wall
     Vec3 toWall;           // unit vector; zero where no wall is near
-    bool isOpposite = false; // beyond the centre another wall faces that one
+    bool isOpposite = false; // beyond the centre another wall faces that one,
+    double width = 0;        // of h: so far from it; 0 without one
+};
+
+// Cells on the other side of walls that go where one in a gap comes back: a sheet has room for one of the two.
+struct Displaced {
+    std::array<Place, 3> cells;
+    int count = 0;
+    const Place* begin() const { return cells.data(); }
+    const Place* end() const { return cells.data() + count; }
 };
 
 // Cells beside another region, in sight of it, have no room: paint decides which regions are meshed. Some quarter of a
@@ -55,9 +64,11 @@ class Room {
     bool isWay(const Place& a, const Place& b) const;
     // Does geometry cross the straight line between the centres?
     bool isWallBetween(const Place& a, const Place& b) const { return bool(index_.firstHit(centre(a), centre(b))); }
-    // May the cell join a kept neighbour, where the front is the better for it? No wall stands between it and any of them, and one does
+    // A kept cell beyond a wall from one that is to come back: does it go, and is told? It does if it has come back itself, and lies in no gap.
+    bool displace(const Place& kept, Displaced& displaced) const;
+    // May the cell join a kept neighbour, where the front is the better for it? No wall stands between it and any that stays, and one does
     // to all that belong to others; with less room than others have it must not lie in the open. clearance: m, as of has().
-    bool mayJoin(const Place& c, double& clearance) const;
+    bool mayJoin(const Place& c, double& clearance, Displaced& displaced) const;
 
   private:
     Vec3 centre(const Place& c) const { return grid_.lattice.cellBox(grid_.levels[std::size_t(c.level)].level, c.at).centre(); }
