@@ -160,7 +160,7 @@ std::string wallBetweenKept(const CellGrid& grid, const CutCells& cut, const Kep
             if (!cut.levels[l]->isValueOn(it.getCoord())) continue;
             const Index3 c = toIndex(it.getCoord());
             const Vec3 centre = grid.lattice.cellBox(level, c).centre();
-            if (index.closest(centre, RoomOptions().squeezed * grid.lattice.h(level))) return fmt::format("cell {} {} {} has no room", c[0], c[1], c[2]);
+            if (index.closest(centre, RoomOptions().least * grid.lattice.h(level))) return fmt::format("cell {} {} {} has no room", c[0], c[1], c[2]);
             for (std::size_t d = 0; d < 6; ++d) {
                 Index3 n = c;
                 n[d / 2] += d % 2 ? 1 : -1;

@@ -17,8 +17,8 @@ std::string frontFault(const CellGrid& grid, const KeptCells& kept);
 // Least distance of kept cells' vertices to the geometry, in edges of the finest cell around the vertex.
 double leastClearance(const CellGrid& grid, const KeptCells& kept, const SurfaceIndex& index);
 
-// "" or the first kept cut cell nearer than RoomOptions::rim to the geometry (in a gap between two walls GapOptions::least), or with geometry between its centre and that of a
-// kept cell that it shares a face with.
+// "" or the first kept cut cell nearer than RoomOptions::least to the geometry, or with geometry between its centre and that of a kept
+// cell that it shares a face with.
 std::string wallBetweenKept(const CellGrid& grid, const CutCells& cut, const KeptCells& kept, const SurfaceIndex& index);
 
 // "" or where cells that no geometry meets are missing amid kept ones: a wall without a cause.

@@ -57,7 +57,7 @@ GapCell GapFiller::look(const Place& c) const {
     cell.clearance = walls.clearance;
     if (!walls.isOpposite) return cell;
     cell.isCovered = room_.isKeptAt(c, walls.toWall * -options_.across);
-    cell.fits = walls.clearance >= options_.least && walls.width >= options_.width;
+    cell.fits = walls.clearance >= room_.options().least && walls.width >= options_.width;
     for (int d = 0; d < 6; ++d) {
         const Place n = faceNeighbour(c, d);
         if (room_.isWallBetween(c, n)) {

@@ -11,8 +11,7 @@ namespace i2b {
 
 struct GapOptions {
     double width = 0.5;    // of h: least room between the walls at a given cell
-    double least = 0.001;  // of h: least distance from its centre to the geometry: on which side it is must be sure
-    double displaced = 0.3; // faces that must be spared for a cell that goes
+    double displaced = 0.02; // faces that must be spared for a cell that goes: little, there are others behind it
     double ahead = 0.85;   // cosine: a wall in this direction is one that a face can go to
     double across = 1.25;  // of h: a cell kept so far from the centre, away from the wall, has its own face to that wall: kept cells
                            // look into no gap there, but given ones beside it do

@@ -116,7 +116,7 @@ bool Room::displace(const Place& kept, Displaced& displaced) const {
 bool Room::mayJoin(const Place& c, double& clearance, Displaced& displaced) const {
     if (!isCandidate(c) || isKept(c)) return false;
     clearance = distance(c);
-    if (clearance < options_.squeezed * h(c) || !isFree(c)) return false;
+    if (clearance < options_.least * h(c) || !isFree(c)) return false;
     if (clearance < options_.rim * h(c) && isInTheOpen(c)) return false;
     bool joined = false;
     for (int d = 0; d < 6; ++d) {
@@ -127,7 +127,7 @@ bool Room::mayJoin(const Place& c, double& clearance, Displaced& displaced) cons
         if (kept ? walled && !displace(n, displaced) : !walled) return false;
         joined = joined || (kept && !walled);
     }
-    return joined;
+    return joined && ((displaced.count == 0 && clearance >= options_.squeezed * h(c)) || wallsAround(c).isOpposite);
 }
 
 std::vector<Place> besideKept(const Room& room) {

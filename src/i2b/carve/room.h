@@ -12,7 +12,8 @@ struct RoomOptions {
     double rim = 0.2;                          // of h: least distance from a given cell's centre to the geometry
     double centre = 0.24;                      // of h: the same where others are reached from it
     std::array<double, 3> way{0.25, 0.25, 0.2}; // of h: least distance to the geometry at quarters of a way between centres
-    double squeezed = 0.001;                   // of h: the same where a gap or a front needs it: on which side the centre is must be sure
+    double squeezed = 0.05;                    // of h: the same where a front needs it,
+    double least = 0.001;                      // of h: and where it does in a gap: on which side the centre is must be sure
     int tuckedAway = 13;                       // kept ones of the 26 cells around, at most, for a cell with less room than rim
     double gapWidth = 2;                       // of h: from a cell's centre to a wall that faces the nearest one
     double facing = 0.5;                       // cosine of the angle to its normal, at most, under which a wall is met that faces another
@@ -43,6 +44,7 @@ class Room {
     Room(const CellGrid& grid, const CutCells& cut, const Regions& regions, const Region& region, const std::vector<Mask::Ptr>& kept,
          const std::vector<Mask::Ptr>& taken, const SurfaceIndex& index, const RoomOptions& options = {});
 
+    const RoomOptions& options() const { return options_; }
     const std::vector<Mask::Ptr>& candidates() const { return candidates_; } // by level: removed at first, may come back
     bool isCandidate(const Place& c) const { return isOn(candidates_, c) || isOn(painted_, c); }
     bool isKept(const Place& c) const { return isOn(kept_, c); }
