@@ -135,7 +135,10 @@ TEST(Dictionary, EachFaceIsNewOnce) {
     EXPECT_EQ(checkOf(sheared(), limits, "maxNonOrtho").newFaces, 1);
     EXPECT_EQ(checkOf(sheared(), limits, "minTwist").faces, 7);
     EXPECT_EQ(checkOf(sheared(), limits, "minTwist").newFaces, 6);
-    EXPECT_EQ(measureQuality(sheared(), {}, limits).dictionaryFaces, 7);
+    const QualityReport report = measureQuality(sheared(), {}, limits);
+    EXPECT_EQ(report.dictionaryFaces, 7);
+    EXPECT_EQ(report.dictionaryIds.size(), 7u);
+    EXPECT_TRUE(std::ranges::is_sorted(report.dictionaryIds));
 }
 
 // Limits that every face and cell is beyond send all of them the long way.

@@ -1,6 +1,5 @@
 #include "i2b/edit/last_moves.h"
 #include "i2b/core/sort_unique.h"
-#include "i2b/edit/last_resort.h"
 #include "i2b/edit/shape_zip.h"
 #include "i2b/quality/mesh_geometry.h"
 #include <algorithm>
@@ -11,7 +10,6 @@ namespace i2b {
 namespace {
 
 using Index = std::size_t;
-constexpr Index most = 50; // faces: where more are left it is not single points that are wrong
 
 // The cells around a face's cells, and the points of these, each by itself, that no boundary holds.
 Zip placeAround(const PolyMesh& mesh, const Rows& cellFaces, const ZipStar& star, std::int32_t face) {
@@ -42,10 +40,8 @@ Zip placeAround(const PolyMesh& mesh, const Rows& cellFaces, const ZipStar& star
 
 } // namespace
 
-std::int64_t moveLastPoints(PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits, std::int32_t thinFrom) {
-    if (poorFaces.empty()) return 0;
-    const std::vector<std::int32_t> faces = facesBeyondHelp(mesh, cellFaces, poorFaces, limits, thinFrom);
-    if (faces.empty() || faces.size() > most) return 0;
+std::int64_t moveLastPoints(PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::int32_t>& faces, const DictionaryLimits& limits) {
+    if (faces.empty() || faces.size() > mostLastFaces) return 0;
     ZipStar star(mesh, cellFaces);
     std::map<std::int32_t, Vec3> places; // m, of points that stay moved
     std::int64_t helped = 0;

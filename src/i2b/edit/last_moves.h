@@ -8,9 +8,10 @@
 
 namespace i2b {
 
-// poorFaces, thinFrom: as of facesBeyondHelp() (last_resort.h). Moves points of the mesh only where fewer faces are beyond the limits for it and
-// nothing else is worse. Gives the number of faces that this helped.
-std::int64_t moveLastPoints(PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits,
-                            std::int32_t thinFrom);
+inline constexpr std::size_t mostLastFaces = 50; // where more are left it is not single points that are wrong: none moves
+
+// Moves points around the faces only where fewer faces are beyond the limits for it and nothing else is worse. Gives the number of faces that
+// this helped.
+std::int64_t moveLastPoints(PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::int32_t>& faces, const DictionaryLimits& limits);
 
 } // namespace i2b

@@ -95,21 +95,37 @@ void dropPlaces(std::vector<T>& values, const std::vector<std::int32_t>& places)
     values.resize(to);
 }
 
+// Changes of cells may leave a few faces beyond the limits: then points around these move. Gives whether any did.
+bool moveAfterChanges(MeshResult& out, const DictionaryLimits& limits) {
+    const QualityReport& q = *out.report.quality;
+    if (q.dictionaryFaces > static_cast<std::int64_t>(q.dictionaryIds.size())) return false;
+    return moveLastPoints(out.mesh, out.cells.faces, q.dictionaryIds, limits) > 0;
+}
+
 // What the mesh has come to, by itself and beside the geometry.
 void judge(MeshResult& out, const FeatureGraph& features, const FitSummary& fitted, const RepairSummary& repaired, const DictionaryLimits& limits,
            bool keepCells, Context& context) {
     const SurfaceIndex& index = *out.cartesian->index;
-    Checksum sum;
+    std::uint64_t meshSum = 0;
     const LoopFence fence;
     tbb::task_group beside; // one thread's work
     beside.run([&] {
         fence.enter();
-        sum.add(out.mesh.checksum());
+        meshSum = out.mesh.checksum();
         fence.leave();
     });
     out.cells.wantsQuality = keepCells;
+    const auto measure = [&] { return measureQuality(out.mesh, {}, limits, &out.cells); };
     out.report.quality = stage(
-        context, "quality", [&] { return measureQuality(out.mesh, {}, limits, &out.cells); },
+        context, "quality",
+        [&] {
+            out.report.quality = measure();
+            beside.wait();
+            fence.join();
+            if (!moveAfterChanges(out, limits)) return *std::move(out.report.quality);
+            meshSum = out.mesh.checksum();
+            return measure();
+        },
         [](const QualityReport& q) { return q.cells; });
     out.report.fit = stage(
         context, "fit quality",
@@ -127,8 +143,8 @@ void judge(MeshResult& out, const FeatureGraph& features, const FitSummary& fitt
     out.report.faces = out.mesh.faces();
     out.report.points = static_cast<std::int64_t>(out.mesh.points.size());
     out.report.patches = out.mesh.patches;
-    beside.wait();
-    fence.join();
+    Checksum sum;
+    sum.add(meshSum);
     out.report.checksum = sum.hex();
 }
 
@@ -205,7 +221,8 @@ MeshResult generate(const Options& options, Context& context) {
     const LastResort changed = stage(
         context, "last resort",
         [&] {
-            lastMoves = moveLastPoints(out.mesh, walls.repaired.cellFaces, walls.repaired.unmended, reached, thinFrom);
+            const Rows& cellFaces = walls.repaired.cellFaces;
+            lastMoves = moveLastPoints(out.mesh, cellFaces, facesBeyondHelp(out.mesh, cellFaces, walls.repaired.unmended, reached, thinFrom), reached);
             return changePoorPlaces(out.mesh, walls.repaired.cellFaces, walls.repaired.unmended, reached, thinFrom);
         },
         [&](const LastResort& l) { return l.changes.merged + l.changes.divided + lastMoves; });

@@ -146,6 +146,8 @@ void storeDictionary(const PolyMesh& mesh, const DictionaryLimits& d, const Dict
     determinant.faces = static_cast<std::int64_t>(cellFaces.size());
     determinant.newFaces = static_cast<std::int64_t>(fresh.size());
     report.dictionaryFaces = static_cast<std::int64_t>(faces.faces.size() + fresh.size());
+    std::set_union(faces.faces.begin(), faces.faces.end(), fresh.begin(), fresh.end(), std::back_inserter(report.dictionaryIds));
+    if (report.dictionaryIds.size() > QualityReport::dictionaryIdLimit) report.dictionaryIds.resize(QualityReport::dictionaryIdLimit);
     report.dictionaryLimits = d;
 }
 
