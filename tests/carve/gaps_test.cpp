@@ -104,7 +104,7 @@ TEST(Gaps, AreFilledWherePassagesFillSome) {
             after += f.facesAfter;
             for (const Place& c : f.inGaps) {
                 const Room room(f.painted.grid, f.painted.cut, f.painted.regions, f.region, f.kept, f.taken, *f.painted.index);
-                
+                EXPECT_GE(room.wallsAround(c).width, GapOptions().width);
                 EXPECT_GE(room.wallsAround(c).clearance, RoomOptions().least);
                 for (int d = 0; d < 6; ++d) EXPECT_FALSE(room.isKept(faceNeighbour(c, d)) && room.isWallBetween(c, faceNeighbour(c, d)));
             }

@@ -2,7 +2,8 @@
 // positive component on all of them, and an edge where kept and removed cells alternate comes apart in the same way at
 // both of its ends; removed cells that the geometry passes between do not come apart at an edge, or the tip of a sheet would be
 // a wall of its own. Where that does not hold, a cell goes or, where it has room, comes back: the one after which the
-// fewest vertices around it are at fault; one that comes back in a gap may take the place of those beyond its walls. Taking cells away only would eat up passages of one cell from their mouths.
+// fewest vertices around it are at fault; one that comes back in a gap may take the place of those beyond its walls. Taking
+// cells away only would eat up passages of one cell from their mouths.
 #pragma once
 #include "i2b/carve/room.h"
 

@@ -10,12 +10,12 @@
 namespace i2b {
 
 struct GapOptions {
-    double width = 0.5;    // of h: least room between the walls at a given cell
+    double width = 0.5;      // of h: least room between the walls at a given cell
     double displaced = 0.05; // faces that must be spared for a cell that goes: little, there are others behind it
-    double ahead = 0.85;   // cosine: a wall in this direction is one that a face can go to
-    double across = 1.25;  // of h: a cell kept so far from the centre, away from the wall, has its own face to that wall: kept cells
-                           // look into no gap there, but given ones beside it do
-    int depth = 32;        // steps from the kept cells
+    double ahead = 0.85;     // cosine: a wall in this direction is one that a face can go to
+    double across = 1.25;    // of h: a cell kept so far from the centre, away from the wall, has its own face to that wall: kept
+                             // cells look into no gap there, but given ones beside it do
+    int depth = 32;          // steps from the kept cells
 };
 
 struct GapFilling {

@@ -66,7 +66,7 @@ class Room {
     bool isWay(const Place& a, const Place& b) const;
     // Does geometry cross the straight line between the centres?
     bool isWallBetween(const Place& a, const Place& b) const { return bool(index_.firstHit(centre(a), centre(b))); }
-    // A kept cell beyond a wall from one that is to come back: does it go, and is told? It does if it has come back itself, and lies in no gap.
+    // Of a kept cell beyond a wall from one that is to come back: does it go? It is added if so: if it has come back itself, and lies in no gap.
     bool displace(const Place& kept, Displaced& displaced) const;
     // May the cell join a kept neighbour, where the front is the better for it? No wall stands between it and any that stays, and one does
     // to all that belong to others; with less room than others have it must not lie in the open. clearance: m, as of has().

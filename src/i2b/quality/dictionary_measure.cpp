@@ -1,6 +1,7 @@
 #include "i2b/quality/dictionary_measure.h"
 #include <algorithm>
 #include <numbers>
+#include <span>
 
 namespace i2b {
 namespace {
@@ -146,8 +147,9 @@ void storeDictionary(const PolyMesh& mesh, const DictionaryLimits& d, const Dict
     determinant.faces = static_cast<std::int64_t>(cellFaces.size());
     determinant.newFaces = static_cast<std::int64_t>(fresh.size());
     report.dictionaryFaces = static_cast<std::int64_t>(faces.faces.size() + fresh.size());
-    std::set_union(faces.faces.begin(), faces.faces.end(), fresh.begin(), fresh.end(), std::back_inserter(report.dictionaryIds));
-    if (report.dictionaryIds.size() > QualityReport::dictionaryIdLimit) report.dictionaryIds.resize(QualityReport::dictionaryIdLimit);
+    const auto first = [](const std::vector<std::int32_t>& ids) { return std::span(ids).first(std::min(ids.size(), QualityReport::dictionaryIdLimit)); };
+    std::ranges::set_union(first(faces.faces), first(fresh), std::back_inserter(report.dictionaryIds));
+    report.dictionaryIds.resize(std::min(report.dictionaryIds.size(), QualityReport::dictionaryIdLimit));
     report.dictionaryLimits = d;
 }
 
