@@ -24,7 +24,7 @@ struct Toggle {
     friend bool operator<(const Toggle& a, const Toggle& b) {
         if (a.gain != b.gain) return a.gain > b.gain;
         if (a.add != b.add) return a.add;
-        if (a.displaced.count != b.displaced.count) return a.displaced.count < b.displaced.count;
+        if (a.displaced.size() != b.displaced.size()) return a.displaced.size() < b.displaced.size();
         if (a.clearance != b.clearance) return a.add ? a.clearance > b.clearance : a.clearance < b.clearance;
         return a.cell < b.cell;
     }

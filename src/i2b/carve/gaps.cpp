@@ -88,14 +88,13 @@ std::vector<Place> GapFiller::look(const std::vector<Place>& places) {
             if (!has(cell.walled, d) && room_.isCandidate(n) && !room_.isKept(n) && !find(n)) next.push_back(n);
         }
     }
-    std::sort(next.begin(), next.end());
-    next.erase(std::unique(next.begin(), next.end()), next.end());
+    sortUnique(next);
     return next;
 }
 
 // Of two cells with a wall between them one may be given back: the one that displaces fewer, or has more room.
 void GapFiller::partWalled() {
-    const auto rank = [](const GapCell& cell) { return std::tuple(cell.displaced.count, -cell.clearance, cell.cell); };
+    const auto rank = [](const GapCell& cell) { return std::tuple(cell.displaced.size(), -cell.clearance, cell.cell); };
     std::vector<std::uint8_t> goes(cells_.size(), 0);
     parallelFor(cells_.size(), [&](std::size_t i) {
         const GapCell& cell = cells_[i];
@@ -120,7 +119,7 @@ GapFilling GapFiller::cut() const {
     MinCut cut(items.size());
     for (std::size_t i = 0; i < items.size(); ++i) {
         const GapCell& cell = *items[i];
-        cut.addTaken(i, displacing * cell.displaced.count);
+        cut.addTaken(i, displacing * long(cell.displaced.size()));
         if (!cell.isCovered) cut.addLeft(i, tie);
         for (int d = 0; d < 6; ++d) {
             const Place n = faceNeighbour(cell.cell, d);

@@ -108,8 +108,8 @@ bool Room::isInTheOpen(const Place& c) const {
 }
 
 bool Room::displace(const Place& kept, Displaced& displaced) const {
-    if (std::size_t(displaced.count) == displaced.cells.size() || !isOn(candidates_, kept) || wallsAround(kept).isOpposite) return false;
-    displaced.cells[std::size_t(displaced.count++)] = kept;
+    if (displaced.size() == displaced.capacity() || !isOn(candidates_, kept) || wallsAround(kept).isOpposite) return false;
+    displaced.push_back(kept);
     return true;
 }
 
@@ -118,16 +118,19 @@ bool Room::mayJoin(const Place& c, double& clearance, Displaced& displaced) cons
     clearance = distance(c);
     if (clearance < options_.least * h(c) || !isFree(c)) return false;
     if (clearance < options_.rim * h(c) && isInTheOpen(c)) return false;
+    const auto isInGap = [&] { return wallsAround(c).isOpposite; };
+    if (clearance < options_.squeezed * h(c) && !isInGap()) return false;
     bool joined = false;
     for (int d = 0; d < 6; ++d) {
         const Place n = faceNeighbour(c, d);
         const bool kept = isKept(n);
         if (!kept && !isForeign(n)) continue;
         const bool walled = isWallBetween(n, c);
-        if (kept ? walled && !displace(n, displaced) : !walled) return false;
+        if (!kept && !walled) return false;
+        if (kept && walled && ((displaced.empty() && !isInGap()) || !displace(n, displaced))) return false;
         joined = joined || (kept && !walled);
     }
-    return joined && ((displaced.count == 0 && clearance >= options_.squeezed * h(c)) || wallsAround(c).isOpposite);
+    return joined;
 }
 
 std::vector<Place> besideKept(const Room& room) {

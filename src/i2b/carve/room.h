@@ -5,6 +5,7 @@
 #include "i2b/geometry/surface_index.h"
 #include "i2b/paint/regions.h"
 #include <array>
+#include <boost/container/static_vector.hpp>
 
 namespace i2b {
 
@@ -29,12 +30,7 @@ struct WallsAround {
 };
 
 // Cells on the other side of walls that go where one in a gap comes back: a sheet has room for one of the two.
-struct Displaced {
-    std::array<Place, 3> cells;
-    int count = 0;
-    const Place* begin() const { return cells.data(); }
-    const Place* end() const { return cells.data() + count; }
-};
+using Displaced = boost::container::static_vector<Place, 3>;
 
 // Cells beside another region, in sight of it, have no room: paint decides which regions are meshed. Some quarter of a
 // way lies within h / 8 of any sheet that it passes, so a crack narrower than 0.31 h lets none through.

@@ -10,6 +10,7 @@ namespace i2b {
 namespace {
 
 using Index = std::size_t;
+constexpr Index most = 50; // faces: where there are more it is not single points that are wrong
 
 // The cells around a face's cells, and the points of these, each by itself, that no boundary holds.
 Zip placeAround(const PolyMesh& mesh, const Rows& cellFaces, const ZipStar& star, std::int32_t face) {
@@ -41,7 +42,7 @@ Zip placeAround(const PolyMesh& mesh, const Rows& cellFaces, const ZipStar& star
 } // namespace
 
 std::int64_t moveLastPoints(PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::int32_t>& faces, const DictionaryLimits& limits) {
-    if (faces.empty() || faces.size() > mostLastFaces) return 0;
+    if (faces.empty() || faces.size() > most) return 0;
     ZipStar star(mesh, cellFaces);
     std::map<std::int32_t, Vec3> places; // m, of points that stay moved
     std::int64_t helped = 0;

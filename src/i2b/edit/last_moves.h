@@ -8,10 +8,8 @@
 
 namespace i2b {
 
-inline constexpr std::size_t mostLastFaces = 50; // where more are left it is not single points that are wrong: none moves
-
-// Moves points around the faces only where fewer faces are beyond the limits for it and nothing else is worse. Gives the number of faces that
-// this helped.
+// Moves points around the faces only where fewer faces are beyond the limits for it and nothing else is worse; none where there are too many
+// faces for single points to be what is wrong. Gives the number of faces that this helped.
 std::int64_t moveLastPoints(PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::int32_t>& faces, const DictionaryLimits& limits);
 
 } // namespace i2b

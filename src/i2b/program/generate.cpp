@@ -95,38 +95,36 @@ void dropPlaces(std::vector<T>& values, const std::vector<std::int32_t>& places)
     values.resize(to);
 }
 
-// Changes of cells may leave a few faces beyond the limits: then points around these move. Gives whether any did.
-bool moveAfterChanges(MeshResult& out, const DictionaryLimits& limits) {
-    const QualityReport& q = *out.report.quality;
-    if (q.dictionaryFaces > static_cast<std::int64_t>(q.dictionaryIds.size())) return false;
-    return moveLastPoints(out.mesh, out.cells.faces, q.dictionaryIds, limits) > 0;
-}
-
-// What the mesh has come to, by itself and beside the geometry.
-void judge(MeshResult& out, const FeatureGraph& features, const FitSummary& fitted, const RepairSummary& repaired, const DictionaryLimits& limits,
-           bool keepCells, Context& context) {
-    const SurfaceIndex& index = *out.cartesian->index;
-    std::uint64_t meshSum = 0;
+// Figures of the mesh as it is, and its checksum.
+void measure(MeshResult& out, const DictionaryLimits& limits, bool keepCells, Context& context) {
+    Checksum sum;
     const LoopFence fence;
     tbb::task_group beside; // one thread's work
     beside.run([&] {
         fence.enter();
-        meshSum = out.mesh.checksum();
+        sum.add(out.mesh.checksum());
         fence.leave();
     });
     out.cells.wantsQuality = keepCells;
-    const auto measure = [&] { return measureQuality(out.mesh, {}, limits, &out.cells); };
     out.report.quality = stage(
-        context, "quality",
-        [&] {
-            out.report.quality = measure();
-            beside.wait();
-            fence.join();
-            if (!moveAfterChanges(out, limits)) return *std::move(out.report.quality);
-            meshSum = out.mesh.checksum();
-            return measure();
-        },
+        context, "quality", [&] { return measureQuality(out.mesh, {}, limits, &out.cells); },
         [](const QualityReport& q) { return q.cells; });
+    beside.wait();
+    fence.join();
+    out.report.checksum = sum.hex();
+}
+
+// Changes of cells may leave a few faces beyond the limits, or make them so: points around these move. Gives how many that helped.
+std::int64_t moveAfterChanges(MeshResult& out, const DictionaryLimits& limits, Context& context) {
+    const QualityReport& q = *out.report.quality;
+    if (q.dictionaryFaces == 0 || q.dictionaryFaces > static_cast<std::int64_t>(q.dictionaryIds.size())) return 0;
+    return stage(
+        context, "last moves", [&] { return moveLastPoints(out.mesh, out.cells.faces, q.dictionaryIds, limits); }, [](std::int64_t helped) { return helped; });
+}
+
+// The mesh beside the geometry, and what there is of it.
+void judge(MeshResult& out, const FeatureGraph& features, const FitSummary& fitted, const RepairSummary& repaired, bool keepCells, Context& context) {
+    const SurfaceIndex& index = *out.cartesian->index;
     out.report.fit = stage(
         context, "fit quality",
         [&] {
@@ -143,9 +141,6 @@ void judge(MeshResult& out, const FeatureGraph& features, const FitSummary& fitt
     out.report.faces = out.mesh.faces();
     out.report.points = static_cast<std::int64_t>(out.mesh.points.size());
     out.report.patches = out.mesh.patches;
-    Checksum sum;
-    sum.add(meshSum);
-    out.report.checksum = sum.hex();
 }
 
 } // namespace
@@ -248,7 +243,10 @@ MeshResult generate(const Options& options, Context& context) {
         if (patch.type == "wall") out.report.wallFaces += patch.count;
     walls.front = {}, walls.laid = {}; // from here on the mesh speaks for itself
     lattice.reset();
-    judge(out, features, walls.fitted, walls.repaired, limits, options.output.wants("vtu"), context);
+    const bool keepCells = options.output.wants("vtu");
+    measure(out, limits, keepCells, context);
+    if (moveAfterChanges(out, limits, context) > 0) measure(out, limits, keepCells, context);
+    judge(out, features, walls.fitted, walls.repaired, keepCells, context);
     return out;
 }
 

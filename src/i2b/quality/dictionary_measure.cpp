@@ -147,9 +147,9 @@ void storeDictionary(const PolyMesh& mesh, const DictionaryLimits& d, const Dict
     determinant.faces = static_cast<std::int64_t>(cellFaces.size());
     determinant.newFaces = static_cast<std::int64_t>(fresh.size());
     report.dictionaryFaces = static_cast<std::int64_t>(faces.faces.size() + fresh.size());
-    const auto first = [](const std::vector<std::int32_t>& ids) { return std::span(ids).first(std::min(ids.size(), QualityReport::dictionaryIdLimit)); };
+    const auto first = [](const std::vector<std::int32_t>& ids) { return std::span(ids).first(std::min(ids.size(), Tally::idLimit)); };
     std::ranges::set_union(first(faces.faces), first(fresh), std::back_inserter(report.dictionaryIds));
-    report.dictionaryIds.resize(std::min(report.dictionaryIds.size(), QualityReport::dictionaryIdLimit));
+    report.dictionaryIds.resize(std::min(report.dictionaryIds.size(), Tally::idLimit));
     report.dictionaryLimits = d;
 }
 

@@ -121,8 +121,7 @@ struct QualityReport {
     double maxConcaveAngle = 0;               // degrees
     std::vector<DictionaryCheck> dictionary;  // in the order of checkMesh -meshQuality
     std::int64_t dictionaryFaces = 0;         // beyond any of its limits
-    static constexpr std::size_t dictionaryIdLimit = 50;
-    std::vector<std::int32_t> dictionaryIds;  // the first of these, ascending
+    std::vector<std::int32_t> dictionaryIds;  // the first of these, ascending, as many as a Tally keeps
     double minFullness = 0;                   // least determinant by all faces, the dictionary's
     QualityLimits limits;                     // those it was measured with
     DictionaryLimits dictionaryLimits;
