@@ -146,5 +146,31 @@ TEST(EditMesh, SameOnAnyNumberOfThreads) {
     }
 }
 
+// In a mesh of which most faces stay side by side, more of them than threads share at once: what is far from the changes is as it was,
+// but for its numbers.
+TEST(EditMesh, LeavesLongRunsAsTheyWere) {
+    std::mt19937 random(5);
+    const PolyMesh before = shakenBlock(24, 0.1, random);
+    MeshEdits edits = nothing(before);
+    const Index f = before.neighbour.size() / 2;
+    const std::int32_t low = before.owner[f], high = before.neighbour[f];
+    edits.groups[Index(high)] = low;
+    edits.divided = {{static_cast<std::int32_t>(f / 2), 1u}, {before.internalFaces() + 7, 2u}};
+    PolyMesh mesh = before;
+    const std::vector<std::int32_t> numbers = editMesh(mesh, edits);
+    ASSERT_EQ(mesh.validate(), "");
+    EXPECT_EQ(mesh.faces(), before.faces() + 1);
+    std::int32_t now = 0;
+    for (std::int32_t was = 0; was < before.faces(); ++was) {
+        const auto touches = [&](std::int32_t cell) { return cell == low || cell == high; };
+        if (touches(before.owner[Index(was)]) || (was < before.internalFaces() && touches(before.neighbour[Index(was)]))) continue;
+        if (was == edits.divided[0].first || was == edits.divided[1].first) continue;
+        while (now < mesh.faces() && !std::ranges::equal(mesh.face(now), before.face(was))) ++now; // in the order of before
+        ASSERT_LT(now, mesh.faces()) << was;
+        EXPECT_EQ(mesh.owner[Index(now)], numbers[Index(before.owner[Index(was)])]);
+        if (was < before.internalFaces()) EXPECT_EQ(mesh.neighbour[Index(now)], numbers[Index(before.neighbour[Index(was)])]);
+    }
+}
+
 } // namespace
 } // namespace i2b::test

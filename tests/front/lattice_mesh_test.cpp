@@ -236,6 +236,16 @@ TEST(LatticeMesh, CornersLieWhereTheirBitsSay) {
     }
 }
 
+// One at a time as all at once: also of the further points of vertices that part kept cells.
+TEST_P(RandomMesh, SinglePointsLieWhereAllOfThemDo) {
+    for (unsigned seed = 20 * GetParam(); seed < 20 * GetParam() + 20; ++seed) {
+        const CarvedAtRandom c = make(seed);
+        const LatticeMesh mesh(c.grid, c.kept);
+        const RawVector<Vec3> points = mesh.latticePoints();
+        for (std::size_t p = 0; p < points.size(); ++p) ASSERT_EQ(mesh.latticePoint(static_cast<std::int32_t>(p)), points[p]) << "seed " << seed;
+    }
+}
+
 std::string faultOf(const CellGrid& grid) {
     if (const std::string fault = grid.validate(); !fault.empty()) return fault;
     KeptCells all;

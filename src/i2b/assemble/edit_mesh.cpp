@@ -17,129 +17,183 @@ std::vector<std::int32_t> numberCells(const std::vector<std::int32_t>& groups, s
     return number;
 }
 
-// The faces that are left, in their new order: most keep their places, since numbers keep the order of cells.
-class FaceOrder {
+// Faces that follow each other before and after, with the cells at their sides as they were but for their numbers; or a single one.
+struct Run {
+    Index face = 0, count = 0;               // of before
+    Index piece = 0, vertex = 0;             // where what becomes of them begins
+    const std::uint32_t* division = nullptr; // of a single face: how it is divided
+    bool isTurned = false;
+};
+
+// All faces that are left, in their new order. Few change: the others stay where they are between these, since numbers keep the order
+// of cells.
+class Runs {
   public:
-    FaceOrder(const PolyMesh& mesh, const std::vector<std::int32_t>& groups) : mesh_(mesh), groups_(groups) {
-        const Index internal = mesh.neighbour.size();
-        const auto pick = [&](bool wantPlain) {
-            return collect<std::uint32_t>(internal, [&](Index f, const auto& put) {
-                const Sides s = sides(f);
-                if (s.low != s.high && (s.low == mesh.owner[f] && s.high == mesh.neighbour[f]) == wantPlain) put(static_cast<std::uint32_t>(f));
-            });
-        };
-        const auto before = [this](std::uint32_t a, std::uint32_t b) {
-            const Sides s = sides(a), t = sides(b);
-            return s.low != t.low ? s.low < t.low : s.high < t.high;
-        };
-        const RawVector<std::uint32_t> plain = pick(true);
-        RawVector<std::uint32_t> changed = pick(false); // few
-        std::stable_sort(changed.begin(), changed.end(), before);
-        internal_ = plain.size() + changed.size();
-        order_.resize(internal_ + Index(mesh.faces()) - internal);
-        std::vector<Index> at; // of the plain ones, where those that changed go in: after those that are alike
-        for (const std::uint32_t f : changed) at.push_back(static_cast<Index>(std::upper_bound(plain.begin(), plain.end(), f, before) - plain.begin()));
-        for (Index k = 0; k < changed.size(); ++k) order_[at[k] + k] = changed[k];
-        parallelFor(plain.size(), [&](Index i) { order_[i + Index(std::upper_bound(at.begin(), at.end(), i) - at.begin())] = plain[i]; }, 8192);
-        parallelFor(order_.size() - internal_, [&](Index i) { order_[internal_ + i] = static_cast<std::uint32_t>(internal + i); }, 16384);
-    }
-    Index size() const { return order_.size(); }
-    Index internal() const { return internal_; }
-    Index face(Index i) const { return order_[i]; }
-    bool isTurned(Index i) const { return i < internal_ && groups_[Index(mesh_.owner[order_[i]])] > groups_[Index(mesh_.neighbour[order_[i]])]; }
+    Runs(const PolyMesh& mesh, const MeshEdits& edits);
+    std::span<const Run> all() const { return {runs_.data(), runs_.size() - 1}; }
+    Index pieces() const { return runs_.back().piece; }
+    Index internalPieces() const { return runs_[firstBoundary_].piece; }
+    Index vertices() const { return runs_.back().vertex; }
+    Index piecesOf(const Run& run) const { return (&run + 1)->piece - run.piece; }
+    Index placeOf(Index boundaryFace) const; // its first piece; of the mesh's last face and one more: the end
 
   private:
+    static constexpr Index most = 16384; // faces in a run, so that threads share them
+
     struct Sides { std::int32_t low, high; };
     Sides sides(Index f) const {
         const std::int32_t a = groups_[Index(mesh_.owner[f])], b = groups_[Index(mesh_.neighbour[f])];
         return {std::min(a, b), std::max(a, b)};
     }
+    Index firstAfter(const Sides& s) const;
+    void addWhole(Index begin, Index end);
+    void addAlone(Index face);
+    void addUpTo(Index end); // of those that stay where they are
+    void place();
 
     const PolyMesh& mesh_;
     const std::vector<std::int32_t>& groups_;
-    RawVector<std::uint32_t> order_;
-    Index internal_ = 0;
-};
-
-// What becomes of each face.
-class Divisions {
-  public:
-    Divisions(const PolyMesh& mesh, const MeshEdits& edits) : mesh_(mesh), divided_(edits.divided), isDivided_(Index(mesh.faces()), 0) {
-        for (const auto& [face, from] : divided_) isDivided_[Index(face)] = 1;
-    }
-    const std::uint32_t* of(Index face) const { // null: stays whole
-        if (!isDivided_[face]) return nullptr; // nearly all
-        const auto at = std::lower_bound(divided_.begin(), divided_.end(), face, [](const auto& one, Index f) { return Index(one.first) < f; });
-        return &at->second;
-    }
-    std::uint32_t pieces(Index face) const { return of(face) ? size(face) - 2 : 1; }
-    std::uint32_t vertices(Index face) const { return of(face) ? 3 * (size(face) - 2) : size(face); } // of all pieces
-
-  private:
-    std::uint32_t size(Index face) const { return mesh_.faceOffsets[face + 1] - mesh_.faceOffsets[face]; }
-    const PolyMesh& mesh_;
     const std::vector<std::pair<std::int32_t, std::uint32_t>>& divided_;
-    std::vector<std::uint8_t> isDivided_; // per face
+    std::vector<Run> runs_; // and one without faces at the end
+    Index firstBoundary_ = 0, next_ = 0;
 };
 
-// Where what comes of each face in the new order begins; one more at the end.
-RawVector<std::uint32_t> scan(const FaceOrder& order, const auto& count) {
-    return sumsBefore<std::uint32_t>(order.size(), [&](Index i) { return count(order.face(i)); });
+Runs::Runs(const PolyMesh& mesh, const MeshEdits& edits) : mesh_(mesh), groups_(edits.groups), divided_(edits.divided) {
+    const Index internal = mesh.neighbour.size();
+    const RawVector<std::uint32_t> leaving = collect<std::uint32_t>(internal, [&](Index f, const auto& put) {
+        const Sides s = sides(f);
+        if (s.low == s.high || s.low != mesh.owner[f] || s.high != mesh.neighbour[f]) put(static_cast<std::uint32_t>(f));
+    });
+    struct Moved { Index before, face; Sides sides; };
+    std::vector<Moved> moved; // goes before that face; of the same place in the order of its new sides
+    for (const std::uint32_t f : leaving) {
+        if (const Sides s = sides(f); s.low != s.high) moved.push_back({firstAfter(s), f, s});
+    }
+    std::ranges::stable_sort(moved, [](const Moved& a, const Moved& b) { return a.sides.low != b.sides.low ? a.sides.low < b.sides.low : a.sides.high < b.sides.high; });
+    auto in = moved.begin();
+    const auto addMovedBefore = [&](Index face) {
+        for (; in != moved.end() && in->before <= face; ++in) addUpTo(in->before), addAlone(in->face);
+    };
+    for (const std::uint32_t f : leaving) {
+        addMovedBefore(f);
+        addUpTo(f);
+        next_ = Index(f) + 1;
+    }
+    addMovedBefore(internal);
+    addUpTo(internal);
+    firstBoundary_ = runs_.size();
+    addUpTo(mesh.owner.size());
+    place();
 }
 
-void rewriteVertices(PolyMesh& mesh, const FaceOrder& order, const Divisions& divisions, const RawVector<std::uint32_t>& firstPiece) {
-    const RawVector<std::uint32_t> first = scan(order, [&](Index f) { return divisions.vertices(f); });
-    RawVector<std::int32_t> vertices(first.back());
-    RawVector<std::uint32_t> offsets(firstPiece.back() + 1);
-    offsets.back() = first.back();
-    parallelFor(order.size(), [&](Index i) {
-        const auto v = mesh.face(static_cast<std::int32_t>(order.face(i)));
-        const std::uint32_t* const division = divisions.of(order.face(i));
-        std::uint32_t at = first[i];
-        if (!division) {
-            offsets[firstPiece[i]] = at;
-            std::copy(v.begin(), v.end(), vertices.begin() + at);
-            if (order.isTurned(i)) std::reverse(vertices.begin() + at + 1, vertices.begin() + static_cast<std::ptrdiff_t>(at + v.size()));
+// The first internal face whose sides, as they were, come after these.
+Index Runs::firstAfter(const Sides& s) const {
+    Index begin = 0, end = mesh_.neighbour.size();
+    while (begin < end) {
+        const Index middle = begin + (end - begin) / 2;
+        const bool isAfter = mesh_.owner[middle] != s.low ? mesh_.owner[middle] > s.low : mesh_.neighbour[middle] > s.high;
+        if (isAfter) end = middle;
+        else begin = middle + 1;
+    }
+    return begin;
+}
+
+void Runs::addWhole(Index begin, Index end) {
+    for (; begin < end; begin += most) runs_.push_back({begin, std::min(most, end - begin)});
+}
+
+void Runs::addAlone(Index face) {
+    const auto at = std::lower_bound(divided_.begin(), divided_.end(), face, [](const auto& one, Index f) { return Index(one.first) < f; });
+    const bool isDivided = at != divided_.end() && Index(at->first) == face;
+    const bool isTurned = face < mesh_.neighbour.size() && groups_[Index(mesh_.owner[face])] > groups_[Index(mesh_.neighbour[face])];
+    runs_.push_back({face, 1, 0, 0, isDivided ? &at->second : nullptr, isTurned});
+}
+
+void Runs::addUpTo(Index end) {
+    auto at = std::lower_bound(divided_.begin(), divided_.end(), next_, [](const auto& one, Index f) { return Index(one.first) < f; });
+    for (; at != divided_.end() && Index(at->first) < end; ++at) {
+        addWhole(next_, Index(at->first));
+        addAlone(Index(at->first));
+        next_ = Index(at->first) + 1;
+    }
+    addWhole(next_, end);
+    next_ = std::max(next_, end);
+}
+
+void Runs::place() {
+    runs_.push_back({});
+    Index piece = 0, vertex = 0;
+    for (Run& run : runs_) {
+        run.piece = piece, run.vertex = vertex;
+        const Index vertices = mesh_.faceOffsets[run.face + run.count] - mesh_.faceOffsets[run.face];
+        piece += run.division ? vertices - 2 : run.count;
+        vertex += run.division ? 3 * (vertices - 2) : vertices;
+    }
+}
+
+Index Runs::placeOf(Index boundaryFace) const {
+    const auto first = runs_.begin() + std::ptrdiff_t(firstBoundary_), last = runs_.end() - 1;
+    const auto at = std::partition_point(first, last, [&](const Run& run) { return run.face + run.count <= boundaryFace; });
+    return at == last ? pieces() : at->piece + (boundaryFace - at->face);
+}
+
+void rewriteVertices(PolyMesh& mesh, const Runs& runs) {
+    RawVector<std::int32_t> vertices(runs.vertices());
+    parallelFor(runs.all().size(), [&](Index i) {
+        const Run& run = runs.all()[i];
+        std::int32_t* to = vertices.data() + run.vertex;
+        if (run.division) {
+            const auto v = mesh.face(static_cast<std::int32_t>(run.face));
+            for (FaceTriangle triangle : trianglesOf(mesh.points, v, *run.division)) {
+                if (run.isTurned) std::swap(triangle[1], triangle[2]);
+                for (const std::uint32_t k : triangle) *to++ = v[k];
+            }
             return;
         }
-        std::uint32_t piece = firstPiece[i];
-        for (const FaceTriangle& triangle : trianglesOf(mesh.points, v, *division)) {
-            offsets[piece++] = at;
-            for (Index k = 0; k < 3; ++k) vertices[at + k] = v[triangle[k]];
-            if (order.isTurned(i)) std::swap(vertices[at + 1], vertices[at + 2]);
-            at += 3;
-        }
-    });
+        const std::int32_t* const from = mesh.faceVertices.data();
+        std::int32_t* const end = std::copy(from + mesh.faceOffsets[run.face], from + mesh.faceOffsets[run.face + run.count], to);
+        if (run.isTurned) std::reverse(to + 1, end);
+    }, 1);
     mesh.faceVertices = std::move(vertices);
+}
+
+void rewriteOffsets(PolyMesh& mesh, const Runs& runs) {
+    RawVector<std::uint32_t> offsets(runs.pieces() + 1);
+    offsets.back() = static_cast<std::uint32_t>(runs.vertices());
+    parallelFor(runs.all().size(), [&](Index i) {
+        const Run& run = runs.all()[i];
+        for (Index k = 0, n = runs.piecesOf(run); k < n; ++k)
+            offsets[run.piece + k] = static_cast<std::uint32_t>(run.vertex + (run.division ? 3 * k : mesh.faceOffsets[run.face + k] - mesh.faceOffsets[run.face]));
+    }, 1);
     mesh.faceOffsets = std::move(offsets);
 }
 
-void rewriteSides(PolyMesh& mesh, const FaceOrder& order, const std::vector<std::int32_t>& number, const RawVector<std::uint32_t>& firstPiece) {
-    RawVector<std::int32_t> owner(firstPiece.back()), neighbour(firstPiece[order.internal()]);
-    parallelFor(order.size(), [&](Index i) {
-        const std::int32_t own = number[Index(mesh.owner[order.face(i)])];
-        const std::int32_t nei = i < order.internal() ? number[Index(mesh.neighbour[order.face(i)])] : own;
-        for (Index k = firstPiece[i]; k < firstPiece[i + 1]; ++k) {
-            owner[k] = std::min(own, nei);
-            if (i < order.internal()) neighbour[k] = std::max(own, nei);
+void rewriteSides(PolyMesh& mesh, const Runs& runs, const std::vector<std::int32_t>& number) {
+    const Index internal = runs.internalPieces();
+    RawVector<std::int32_t> owner(runs.pieces()), neighbour(internal);
+    parallelFor(runs.all().size(), [&](Index i) {
+        const Run& run = runs.all()[i];
+        for (Index k = 0, n = runs.piecesOf(run); k < n; ++k) {
+            const Index face = run.face + (run.division ? 0 : k), piece = run.piece + k;
+            const std::int32_t own = number[Index(mesh.owner[face])];
+            const std::int32_t nei = piece < internal ? number[Index(mesh.neighbour[face])] : own;
+            owner[piece] = std::min(own, nei);
+            if (piece < internal) neighbour[piece] = std::max(own, nei);
         }
-    });
-    Index i = order.internal();
-    for (Patch& patch : mesh.patches) {
-        const Index end = i + Index(patch.count);
-        patch.start = static_cast<std::int32_t>(firstPiece[i]);
-        patch.count = static_cast<std::int32_t>(firstPiece[end] - firstPiece[i]);
-        i = end;
-    }
+    }, 1);
     mesh.owner = std::move(owner), mesh.neighbour = std::move(neighbour);
 }
 
+// One array after the other, so that only one is there twice at a time.
 void rewriteFaces(PolyMesh& mesh, const MeshEdits& edits, const std::vector<std::int32_t>& number) {
-    const FaceOrder order(mesh, edits.groups);
-    const Divisions divisions(mesh, edits);
-    const RawVector<std::uint32_t> firstPiece = scan(order, [&](Index f) { return divisions.pieces(f); });
-    rewriteVertices(mesh, order, divisions, firstPiece);
-    rewriteSides(mesh, order, number, firstPiece);
+    const Runs runs(mesh, edits);
+    for (Patch& patch : mesh.patches) {
+        const Index start = runs.placeOf(Index(patch.start)), end = runs.placeOf(Index(patch.start) + Index(patch.count));
+        patch.start = static_cast<std::int32_t>(start), patch.count = static_cast<std::int32_t>(end - start);
+    }
+    rewriteVertices(mesh, runs);
+    rewriteOffsets(mesh, runs);
+    rewriteSides(mesh, runs, number);
 }
 
 template <class T, class Join>

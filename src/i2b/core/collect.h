@@ -1,5 +1,6 @@
 // What loops find, in the order of the items that they found it at: fixed chunks side by side, put together in their order.
 #pragma once
+#include "i2b/core/give_up.h"
 #include "i2b/core/parallel.h"
 #include "i2b/core/raw_vector.h"
 #include <algorithm>
@@ -21,7 +22,7 @@ RawVector<T> collect(std::size_t n, const Body& body, std::size_t chunk = 16384)
     RawVector<T> all(exclusiveScan(first));
     parallelFor(found.size(), [&](std::size_t c) {
         std::copy(found[c].begin(), found[c].end(), all.begin() + static_cast<std::ptrdiff_t>(first[c]));
-        found[c] = {};
+        giveUp(found[c]);
     }, 1);
     return all;
 }

@@ -132,7 +132,7 @@ std::vector<std::int32_t> facesBeyondHelp(const PolyMesh& mesh, const Rows& cell
     return facesLeft(mesh, poorFaces, limits, edits);
 }
 
-LastResort changePoorPlaces(PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits, std::int32_t thinFrom) {
+LastResort changePoorPlaces(PolyMesh& mesh, Rows cellFaces, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits, std::int32_t thinFrom) {
     LastResort summary;
     std::vector<std::int32_t> faces, concave;
     // MeshFaults names those that the default limit forbids, but for thin cells that have many.
@@ -155,6 +155,7 @@ LastResort changePoorPlaces(PolyMesh& mesh, const Rows& cellFaces, const std::ve
     if (summary.changes.merged + summary.changes.divided == 0) return summary;
     const MeshEdits all = edits.edits();
     summary.morePieces = piecesOfWalls(mesh, all);
+    cellFaces = {}; // room for the arrays that take the place of the mesh's
     summary.cellOf = editMesh(mesh, all);
     return summary;
 }

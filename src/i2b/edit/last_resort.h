@@ -27,7 +27,7 @@ struct LastResort {
 // poorFaces: ascending, as MeshFaults names them; what lies around them is looked at. Cells from thinFrom on are layers of a height
 // that was asked for, and merge only with cells of the core and those of their own column. cellFaces: of the mesh as it is given, which
 // has others afterwards.
-LastResort changePoorPlaces(PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits,
+LastResort changePoorPlaces(PolyMesh& mesh, Rows cellFaces, const std::vector<std::int32_t>& poorFaces, const DictionaryLimits& limits,
                             std::int32_t thinFrom = std::numeric_limits<std::int32_t>::max());
 
 // Those of the faces (ascending) that no such change would mend: still beyond limits, or beside one that is, when all have been tried.

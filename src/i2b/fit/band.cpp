@@ -1,5 +1,6 @@
 #include "i2b/fit/band.h"
 #include "i2b/core/flags.h"
+#include "i2b/core/give_up.h"
 #include "i2b/core/rows.h"
 #include "i2b/fit/band_marks.h"
 #include "i2b/fit/band_pieces.h"
@@ -246,7 +247,7 @@ Band buildBand(const LatticeMesh& mesh, const Front& front, int rings, const Wan
     appendCorners(band, pieces, 2 * front.mesh.n_halfedges() * 5 / 4); // those of the prisms, of vertices put in later, too
     band.coreCorners = band.corners.size();
     band.parents = parentsOf(band.nodes(), pieces);
-    for (BandPieces& p : pieces) p.corners = {}, p.hanging = {};
+    for (BandPieces& p : pieces) giveUp(p.corners, p.hanging);
     const std::size_t chunk = 4096, before = pieces.size(); // and the front's nodes with the wall's
     pieces.resize(before + (band.walls + chunk - 1) / chunk);
     parallelChunks(band.walls, chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
@@ -260,7 +261,7 @@ Band buildBand(const LatticeMesh& mesh, const Front& front, int rings, const Wan
         if (p < core && q >= core) e.weight *= static_cast<float>(band.prismHeight(p));
         return e;
     });
-    pieces = {};
+    giveUp(pieces);
     band.cornersOf.fixed = rowsOfCorners(band, band.movable, 0, band.coreCorners);
     addPrisms(band, front);
     band.blocks = NodeBlocks(band);

@@ -1,4 +1,5 @@
 #include "i2b/fit/blocks.h"
+#include "i2b/core/give_up.h"
 #include "i2b/core/parallel_turns.h"
 #include "i2b/fit/band.h"
 #include <algorithm>
@@ -49,7 +50,7 @@ void forNodesAround(const Band& band, std::size_t n, const F& f) {
 NodeBlocks::NodeBlocks(const Band& band) {
     gather(band);
     colour(order(band));
-    blockOf_ = {};
+    giveUp(blockOf_);
 }
 
 void NodeBlocks::gather(const Band& band) {

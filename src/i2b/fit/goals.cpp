@@ -1,4 +1,5 @@
 #include "i2b/core/parallel.h"
+#include "i2b/core/give_up.h"
 #include "i2b/core/raw_vector.h"
 #include "i2b/fit/corner.h"
 #include "i2b/fit/fit.h"
@@ -178,7 +179,7 @@ std::vector<Vec3> startPositions(Band& band, const SurfaceIndex& index) {
         goal[n] = band.inside[i] + (band.start[n] - band.inside[i]) * (0.5 * hit.t);
         for (std::int32_t b : band.fansOf[i]) goal[static_cast<std::size_t>(b)] += goal[n] - band.start[n];
     });
-    band.away = {};
+    giveUp(band.away);
     if (std::find(band.behind.begin(), band.behind.end(), 1) == band.behind.end()) return band.start;
     std::vector<Vec3> x;
     blend(band, band.start, goal, x);

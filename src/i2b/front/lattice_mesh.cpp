@@ -73,6 +73,17 @@ RawVector<Vec3> LatticeMesh::latticePoints(std::size_t room) const {
     return positions;
 }
 
+Vec3 LatticeMesh::latticePoint(std::int32_t point) const {
+    std::int64_t own = point;
+    if (own >= pointCount_) { // of the last vertex whose further points begin no later
+        const auto after = std::upper_bound(front_.begin(), front_.end(), point, [](std::int32_t n, const FrontPoint& p) { return n < p.firstExtra; });
+        own = (after - 1)->point;
+    }
+    int level = pointLevels() - 1;
+    while (points(level).first() > own || points(level).size() == 0) --level;
+    return lattice().corner(level, points(level).at(own));
+}
+
 LatticeMesh::Reader::Reader(const LatticeMesh& mesh)
     : mesh_(mesh), touching_(touchingLevels(mesh.grid_)), lookup_(mesh.grid_, mesh.kept_.levels), isCubes_(mesh.cubes()),
       spots_(spotsAlong * spotsAlong * spotsAlong) {

@@ -56,6 +56,7 @@ class LatticeMesh {
 
     // Positions of all core points on the lattice, m.
     RawVector<Vec3> latticePoints(std::size_t room = 0) const; // room: memory for so many more
+    Vec3 latticePoint(std::int32_t point) const;               // of one, where few are asked for
 
     // Cached look-ups: one Reader per thread.
     class Reader {

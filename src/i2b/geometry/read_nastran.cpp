@@ -1,6 +1,7 @@
 // Nastran bulk data: shells by their corners, a part for each property. Points are named by numbers of the file's own in any order, so pieces
 // are read first, then their points are sorted by number, and only then can corners be resolved.
 #include "i2b/core/error.h"
+#include "i2b/core/give_up.h"
 #include "i2b/core/parallel.h"
 #include "i2b/geometry/file_soup.h"
 #include "i2b/geometry/nastran_piece.h"
@@ -194,7 +195,7 @@ FileSoup readNastran(const MappedFile& file, double scale) {
         taken.size(),
         [&](std::size_t i) {
             taken[i] = resolve(deck, deck.pieces[i]);
-            deck.pieces[i].elements = {};
+            giveUp(deck.pieces[i].elements);
         },
         1);
     for (const Taken& one : taken)

@@ -2,7 +2,9 @@
 // beside the mask, nothing per cell; a look-up is a cached tree probe and one popcount.
 #pragma once
 #include "i2b/grid/mask_ops.h"
+#include <algorithm>
 #include <array>
+#include <bit>
 
 namespace i2b {
 
@@ -17,6 +19,7 @@ class RankedMask {
     std::size_t leafCount() const { return leaves_.size(); }
     const MaskLeaf& leaf(std::size_t i) const { return *leaves_[i]; }
     std::int64_t leafFirst(std::size_t i) const { return first_ + starts_[i]; }
+    Index3 at(std::int64_t rank) const; // the coordinates of the bit of this number
 
     // f(rank, coordinates) for every set bit, in parallel by leaf.
     template <class F>
@@ -57,6 +60,18 @@ class RankedMask {
     std::shared_ptr<openvdb::Int32Tree> index_; // leaf number at (leaf origin / 8)
     std::int64_t first_ = 0, size_ = 0;
 };
+
+inline Index3 RankedMask::at(std::int64_t rank) const {
+    const auto leaf = static_cast<std::size_t>(std::upper_bound(starts_.begin(), starts_.end(), rank - first_) - starts_.begin()) - 1;
+    const std::array<std::uint16_t, 8>& before = before_[leaf];
+    const auto within = static_cast<std::uint16_t>(rank - leafFirst(leaf));
+    const auto word = static_cast<std::size_t>(std::upper_bound(before.begin(), before.end(), within) - before.begin()) - 1;
+    std::uint64_t w = leaves_[leaf]->getValueMask().getWord<openvdb::Index64>(static_cast<openvdb::Index>(word));
+    for (int skip = within - before[word]; skip > 0; --skip) w &= w - 1;
+    const int bit = std::countr_zero(w);
+    const Index3 o = toIndex(leaves_[leaf]->origin());
+    return {o[0] + static_cast<int>(word), o[1] + (bit >> 3), o[2] + (bit & 7)};
+}
 
 inline std::int32_t RankedMask::Reader::leafIndex(const Index3& c) {
     const Index3 key{c[0] >> 3, c[1] >> 3, c[2] >> 3};

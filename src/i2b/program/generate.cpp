@@ -3,6 +3,7 @@
 #include "i2b/carve/flow_lookup.h"
 #include "i2b/core/checksum.h"
 #include "i2b/core/error.h"
+#include "i2b/core/give_up.h"
 #include "i2b/core/memory.h"
 #include "i2b/core/parallel.h"
 #include "i2b/edit/last_moves.h"
@@ -218,10 +219,9 @@ MeshResult generate(const Options& options, Context& context) {
         [&] {
             const Rows& cellFaces = walls.repaired.cellFaces;
             lastMoves = moveLastPoints(out.mesh, cellFaces, facesBeyondHelp(out.mesh, cellFaces, walls.repaired.unmended, reached, thinFrom), reached);
-            return changePoorPlaces(out.mesh, walls.repaired.cellFaces, walls.repaired.unmended, reached, thinFrom);
+            return changePoorPlaces(out.mesh, std::move(walls.repaired.cellFaces), walls.repaired.unmended, reached, thinFrom);
         },
         [&](const LastResort& l) { return l.changes.merged + l.changes.divided + lastMoves; });
-    walls.repaired.cellFaces = {}; // faces are others now
     auto firstLayerCell = static_cast<std::int32_t>(lattice->cellCount());
     if (!changed.cellOf.empty()) firstLayerCell = 1 + *std::max_element(changed.cellOf.begin(), changed.cellOf.begin() + firstLayerCell);
     const ClosedRims rims = stage(
@@ -237,7 +237,7 @@ MeshResult generate(const Options& options, Context& context) {
     dropFaces(out.walls, rims.lostFaces);
     renumber(out.walls, rims.cellOf);
     out.report.layers = summarize(out.walls, walls.front, c.surface.parts, options.layers.count);
-    out.walls.askedFirst = {}, out.walls.askedThickness = {}; // the report has them
+    giveUp(out.walls.askedFirst, out.walls.askedThickness); // the report has them
     sortByCell(out.walls);
     for (const Patch& patch : out.mesh.patches)
         if (patch.type == "wall") out.report.wallFaces += patch.count;

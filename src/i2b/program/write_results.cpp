@@ -1,4 +1,5 @@
 #include "i2b/program/write_results.h"
+#include "i2b/core/give_up.h"
 #include "i2b/program/print.h"
 #include "i2b/core/memory.h"
 #include "i2b/quality/cell_quality.h"
@@ -83,7 +84,7 @@ void writeMeshResults(MeshResult& result, const Options& options, Context& conte
                       const CompleteReport& complete) {
     AtomicFolder folder(options.output.folder);
     writeMeshFiles(result, options.output, folder, context);
-    result.mesh = {}, result.cells = {}, result.walls = {}, result.wallNodes = {}, result.offCauses = {}; // on the disk by now
+    result.mesh = {}, result.cells = {}, result.walls = {}, result.wallNodes = {}, giveUp(result.offCauses); // on the disk by now
     returnFreedMemory();
     writeGridFile(*result.cartesian, result.report, options, folder, context);
     writeReportFile(result.report, options.output, folder, complete);

@@ -89,7 +89,7 @@ void countShape(const PolyMesh& mesh, std::span<const std::int32_t> faces, int v
         else if (v.size() == 4)
             ++quads;
     }
-    MeshStatistics& s = part.shapes;
+    CellShapes& s = part.shapes;
     const bool simple = Index(triangles + quads) == faces.size();
     if (simple && triangles == 0 && quads == 6)
         ++s.hexahedra;

@@ -15,7 +15,7 @@ struct CellPart {
     Extremes openness, aspectRatio, volume, determinants, fullness;
     Tally hollow;
     std::vector<std::int32_t> hollowFaces;
-    MeshStatistics shapes;
+    CellShapes shapes;
     std::map<std::int64_t, std::int64_t> polyhedra;
     std::vector<std::int32_t> unorderedFaces;
 

@@ -1,4 +1,5 @@
 #include "i2b/quality/measure_steps.h"
+#include "i2b/core/give_up.h"
 #include <algorithm>
 #include <optional>
 
@@ -11,9 +12,19 @@ enum class Kind { cells, faces, points };
 
 Vec3 place(const Measurement& m, Kind kind, std::int32_t id) {
     const auto i = static_cast<Index>(id);
-    return kind == Kind::cells   ? m.moments[i].centre
+    return kind == Kind::cells   ? m.worstCells.at(id)
            : kind == Kind::faces ? measureFace(m.mesh, id).centre
                                  : m.mesh.points[i];
+}
+
+// Of the cells only the centres that listChecks() shows stay.
+void giveUpMoments(Measurement& m) {
+    const QualityTallies& t = m.tallies;
+    for (const Tally* tally : {&t.illegalCells, &t.zipUpCells, &t.oneInternalFaceCells, &t.twoInternalFacesCells, &t.nonClosedCells, &t.highAspectRatioCells,
+                               &t.zeroVolumeCells, &t.underdeterminedCells, &t.concaveCells}) {
+        if (tally->count > 0) m.worstCells[tally->worstId] = m.moments[static_cast<Index>(tally->worstId)].centre;
+    }
+    giveUp(m.moments);
 }
 
 // In the order of checkMesh's sets. Openness and aspect ratio are one check: open cells leave no word on
@@ -60,6 +71,12 @@ void listChecks(Measurement& m) {
     add("lowVolRatioFaces", Kind::faces, t.lowVolRatioFaces, failing(t.lowVolRatioFaces));
 }
 
+void measurePointFaces(Measurement& m) {
+    const Rows pointFaces = buildPointFaces(m.mesh);
+    measurePoints(m, pointFaces);
+    measureFaceFaces(m, pointFaces);
+}
+
 Box pointBox(std::span<const Vec3> points) {
     return orderedReduce(
         points.size(), Box{},
@@ -86,6 +103,7 @@ QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits, 
     m.report.box = pointBox(mesh.points);
     measureDirections(m);
     measureAlignment(m);
+    measurePointFaces(m); // before there is any other table as large
     m.cellFaces = buildCellFaces(mesh);
     measureCells(m);
     measureZones(m);
@@ -95,11 +113,10 @@ QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits, 
     if (left && left->wantsQuality) m.shown = &shown.emplace(m.moments);
     measureFaces(m);
     if (shown) left->quality = shown->take();
+    giveUpMoments(m);
     measureRegions(m);
     measurePatches(m);
-    const Rows pointFaces = buildPointFaces(mesh);
-    measurePoints(m, pointFaces);
-    measureFaceFaces(m, pointFaces);
+    measureNearPoints(m);
     listChecks(m);
     return std::move(m.report);
 }

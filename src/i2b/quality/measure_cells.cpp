@@ -103,7 +103,7 @@ void store(Measurement& m, CellPart& total, double volumeSum, double determinant
     r.smallDeterminantCells = total.determinant.count, r.concaveCells = total.concave.count;
     r.minFullness = m.mesh.cells > 0 ? total.fullness.least : 0;
     m.hollowCells = std::move(total.hollow), m.hollowFaces = std::move(total.hollowFaces);
-    r.statistics = total.shapes;
+    static_cast<CellShapes&>(r.statistics) = total.shapes;
     r.statistics.polyhedraByFaces.assign(total.polyhedra.begin(), total.polyhedra.end());
     t.illegalCells = total.illegal, t.zipUpCells = total.zipUp;
     t.oneInternalFaceCells = total.oneInternal, t.twoInternalFacesCells = total.twoInternal;

@@ -3,6 +3,7 @@
 #include "i2b/core/flags.h"
 #include "i2b/quality/measure_steps.h"
 #include <algorithm>
+#include <atomic>
 #include <array>
 #include <compare>
 
@@ -244,12 +245,17 @@ class OddPoints {
 
 std::vector<std::uint8_t> suspectFaces(const Measurement& m, const Rows& pointFaces) {
     std::vector<std::uint8_t> suspects(static_cast<Index>(m.mesh.faces()), 0);
+    std::atomic<bool> isAnyRepeated = false;
     parallelChunks(m.mesh.points.size(), 2048, [&](Index begin, Index end, Index) {
         OddPoints odd(m.mesh, pointFaces);
-        for (Index p = begin; p < end; ++p) odd.mark(static_cast<std::int32_t>(p), suspects);
+        for (Index p = begin; p < end; ++p) {
+            odd.mark(static_cast<std::int32_t>(p), suspects);
+            const auto faces = pointFaces[static_cast<std::int32_t>(p)];
+            if (std::ranges::adjacent_find(faces) != faces.end()) isAnyRepeated.store(true, std::memory_order_relaxed);
+        }
     });
     // A repeated vertex counts twice with every face that has it.
-    if (m.report.faultyFaceVertices > 0) std::fill(suspects.begin(), suspects.end(), std::uint8_t(1));
+    if (isAnyRepeated) std::fill(suspects.begin(), suspects.end(), std::uint8_t(1));
     return suspects;
 }
 

@@ -1,4 +1,5 @@
 #include "i2b/core/flags.h"
+#include "i2b/core/give_up.h"
 #include "i2b/quality/measure_steps.h"
 #include <algorithm>
 #include <array>
@@ -213,10 +214,14 @@ void measurePoints(Measurement& m, const Rows& pointFaces) {
     });
     m.report.unusedPoints = m.tallies.unusedPoints.count;
     countEdges(m, pointFaces);
+}
+
+void measureNearPoints(Measurement& m) {
+    const PolyMesh& mesh = m.mesh;
     markNear(mesh.points, nearDistanceSquared(m.report.box), m.shortPoints);
     Tally near = tallyMarks(m.shortPoints);
     if (near.count > m.report.shortEdgePoints) m.tallies.nearPoints = std::move(near);
-    m.shortPoints = {};
+    giveUp(m.shortPoints);
 }
 
 } // namespace i2b

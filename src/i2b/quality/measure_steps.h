@@ -5,6 +5,7 @@
 #include "i2b/quality/mesh_geometry.h"
 #include "i2b/quality/quality_report.h"
 #include "i2b/quality/tally.h"
+#include <map>
 
 namespace i2b {
 
@@ -24,7 +25,7 @@ struct Measurement {
     const QualityLimits& limits;
     const DictionaryLimits& dictionary;
     Rows cellFaces;
-    RawVector<CellMoments> moments; // per cell
+    RawVector<CellMoments> moments; // per cell; given up when faces have been measured
     QualityTallies tallies;
     QualityReport report;
     std::vector<std::uint8_t> shortPoints; // per point: 1 at the end of a short edge
@@ -32,6 +33,7 @@ struct Measurement {
     std::vector<std::int32_t> hollowFaces; // theirs, with repetitions
     // Per cell and per face 1: of the cell only its moments count, of the face nothing; empty: all are measured.
     std::vector<std::uint8_t> outerCells{}, outerFaces{};
+    std::map<std::int32_t, Vec3> worstCells{}; // centres, m, of those that checks name
     CellQualityMaker* shown = nullptr; // takes what measureFaces() finds, of each cell
 };
 
@@ -44,9 +46,9 @@ void measureFaces(Measurement& m);
 
 void measureDirections(Measurement& m); // empty and wedge patches
 void measureAlignment(Measurement& m);  // of edges, where a direction is empty; needs the directions
-void measurePoints(Measurement& m,
-                   const Rows& pointFaces); // unused, internal, near points (after measureFaces); edges
-void measureFaceFaces(Measurement& m, const Rows& pointFaces); // pairs that share points oddly; after measureFaces
+void measurePoints(Measurement& m, const Rows& pointFaces);    // unused, internal ones; edges
+void measureFaceFaces(Measurement& m, const Rows& pointFaces); // pairs that share points oddly
+void measureNearPoints(Measurement& m);                        // after measureFaces
 void measureRegions(Measurement& m);
 void measurePatches(Measurement& m);
 void measureZones(Measurement& m); // needs moments

@@ -74,10 +74,13 @@ struct RegionQuality {
 };
 
 // What a mesh is made of. A cell's shape follows from the sizes of its faces, as checkMesh sees it.
-struct MeshStatistics {
+struct CellShapes { // how many cells of each
+    std::int64_t hexahedra = 0, prisms = 0, wedges = 0, pyramids = 0, tetWedges = 0, tetrahedra = 0, polyhedra = 0;
+};
+
+struct MeshStatistics : CellShapes {
     std::int64_t internalPoints = -1; // used by no boundary face; -1 unless these points come first
     std::int64_t edges = 0, internalEdges = 0, internalEdgesOnePoint = 0, internalEdgesTwoPoints = 0; // if not -1
-    std::int64_t hexahedra = 0, prisms = 0, wedges = 0, pyramids = 0, tetWedges = 0, tetrahedra = 0, polyhedra = 0;
     std::vector<std::pair<std::int64_t, std::int64_t>> polyhedraByFaces; // faces, cells; ascending
 };
 

@@ -27,8 +27,7 @@ class Nodes {
   public:
     Nodes(const Front& front, const MeshNodes& meshNodes, const LatticeMesh& lattice, LayerStack& layers, double thickness)
         : front_(front), meshNodes_(meshNodes), layers_(layers), core_(static_cast<std::size_t>(front.corePoints) + front.inserted.size()) {
-        const RawVector<Vec3> start = lattice.latticePoints();
-        const auto startOf = [&](std::int32_t point) { return start[static_cast<std::size_t>(point)]; };
+        const auto startOf = [&](std::int32_t point) { return lattice.latticePoint(point); };
         const std::size_t fans = front.front.size();
         behind_.resize(front.movedPoints.size()), ahead_.resize(front.firstInserted()), wall_.reserve(fans), wall_.resize(front.firstInserted());
         parallelFor(behind_.size(), [&](std::size_t i) { behind_[i] = {startOf(front.movedPoints[i]), front.movedTo[i]}; }, 2048);

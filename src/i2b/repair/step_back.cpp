@@ -29,9 +29,7 @@ struct Around {
 
 class StepBack {
   public:
-    StepBack(const StepBackInput& in, Optimiser& optimiser) : in_(in), optimiser_(optimiser), start_(in.lattice.latticePoints()) {
-        poorBefore_ = poor();
-    }
+    StepBack(const StepBackInput& in, Optimiser& optimiser) : in_(in), optimiser_(optimiser), poorBefore_(poor()) {}
 
     enum class Outcome { nothingToDo, mended, failed, crowded };
     // Mended where there is one face less that nothing helps.
@@ -89,7 +87,7 @@ class StepBack {
         const Front& front = in_.front;
         if (vertex < front.firstInserted()) {
             const std::array<std::int8_t, 3>& d = front.direction[vertex];
-            return start_[Index(front.corePoint[vertex])] + Vec3{double(d[0]), double(d[1]), double(d[2])} * (in_.startThickness * front.h[vertex]);
+            return in_.lattice.latticePoint(front.corePoint[vertex]) + Vec3{double(d[0]), double(d[1]), double(d[2])} * (in_.startThickness * front.h[vertex]);
         }
         const Front::Inserted& i = front.inserted[vertex - front.firstInserted()];
         const Vec3 a = wallStart(Index(i.ends[0])), b = wallStart(Index(i.ends[1]));
@@ -97,7 +95,7 @@ class StepBack {
     }
     Vec3 startOf(const MeshNode& node) const {
         if (node.kind == MeshNode::wall) return wallStart(Index(node.id));
-        return start_[Index(node.kind == MeshNode::core ? in_.front.movedPoints[Index(node.id)] : node.id)];
+        return in_.lattice.latticePoint(node.kind == MeshNode::core ? in_.front.movedPoints[Index(node.id)] : node.id);
     }
     std::vector<Optimiser::NodeMove> movesOf(const Around& around, double share) const {
         std::vector<Optimiser::NodeMove> moves;
@@ -152,7 +150,6 @@ class StepBack {
 
     const StepBackInput& in_;
     Optimiser& optimiser_;
-    RawVector<Vec3> start_; // per core point
     std::int64_t poorBefore_ = 0;
 };
 

@@ -1,4 +1,5 @@
 #include "i2b/sizing/gaps.h"
+#include "i2b/core/give_up.h"
 #include "i2b/core/parallel.h"
 #include "i2b/core/sort_unique.h"
 #include <algorithm>
@@ -172,7 +173,7 @@ std::vector<LevelCells> cellsAlong(const std::vector<Gap>& gaps, const Lattice& 
         std::vector<Index3> all;
         for (CellsByLevel& part : parts) {
             all.insert(all.end(), part[l].begin(), part[l].end());
-            std::vector<Index3>().swap(part[l]);
+            giveUp(part[l]);
         }
         tbb::parallel_sort(all);
         all.erase(std::unique(all.begin(), all.end()), all.end());
