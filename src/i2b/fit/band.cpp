@@ -95,6 +95,7 @@ void addPrisms(Band& band, const Front& front) {
     const Csr<std::int32_t>& core = band.cornersOf.fixed;
     const Csr<std::int32_t> prisms = rowsOfCorners(band, touched, band.coreCorners, band.corners.size());
     Csr<std::int32_t>& corners = band.cornersOf.changing;
+    corners.values.clear(); // so that none is copied when there are more
     corners.start.resize(touched + 1);
     parallelFor(touched, [&](std::size_t n) { corners.start[n] = static_cast<std::int64_t>(core[n].size() + prisms[n].size()); });
     corners.start[touched] = 0;
@@ -107,6 +108,7 @@ void addPrisms(Band& band, const Front& front) {
     // Each wall node has its front node last: higher in number than all wall nodes.
     band.edges.changingRows = band.walls;
     Csr<BandEdge>& edges = band.edges.changing;
+    edges.values.clear();
     edges.values.resize(wall.values.size() + band.walls);
     edges.start.resize(band.walls + 1);
     edges.start[band.walls] = static_cast<std::int64_t>(edges.values.size());

@@ -1,6 +1,8 @@
 // What wall nodes see of the geometry from where they stand, kept: a node that has not moved since, nor its front node, sees what
 // it saw. Of what a fit asks for that is a third.
 #pragma once
+#include "i2b/core/parallel.h"
+#include "i2b/core/raw_vector.h"
 #include "i2b/fit/between.h"
 #include "i2b/fit/fit.h"
 
@@ -9,7 +11,9 @@ namespace i2b {
 class WallViews {
   public:
     // Both stay; of the band what nodes see by: their front nodes, and which of these are behind geometry.
-    WallViews(const Band& band, const SurfaceIndex& index) : band_(band), index_(index), targets_(band.walls), feet_(band.walls) {}
+    WallViews(const Band& band, const SurfaceIndex& index) : band_(band), index_(index), targets_(band.walls), feet_(band.walls) {
+        parallelFor(band.walls, [&](std::size_t n) { targets_[n].isKnown = feet_[n].isKnown = false; }, 2048);
+    }
     const Band& band() const { return band_; }
     const SurfaceIndex& index() const { return index_; }
     // wallTarget() and footOf() of a wall node with the band's nodes at x. One node is asked for by one thread at a time.
@@ -25,7 +29,7 @@ class WallViews {
     struct View {
         Vec3 wall, front; // m, seen from
         What what;
-        bool isKnown = false;
+        bool isKnown;
     };
     template <class What, class Look>
     const What& seen(View<What>& view, std::size_t wall, const std::vector<Vec3>& x, const Look& look) const {
@@ -36,8 +40,8 @@ class WallViews {
 
     const Band& band_;
     const SurfaceIndex& index_;
-    std::vector<View<WallTarget>> targets_;
-    std::vector<View<Foot>> feet_;
+    RawVector<View<WallTarget>> targets_;
+    RawVector<View<Foot>> feet_;
 };
 
 } // namespace i2b
