@@ -1,5 +1,5 @@
-#include "i2b/quality/measure_steps.h"
 #include "i2b/core/give_up.h"
+#include "i2b/quality/measure_steps.h"
 #include <algorithm>
 #include <optional>
 

@@ -3,8 +3,8 @@
 #include "i2b/core/flags.h"
 #include "i2b/quality/measure_steps.h"
 #include <algorithm>
-#include <atomic>
 #include <array>
+#include <atomic>
 #include <compare>
 
 namespace i2b {

@@ -73,11 +73,12 @@ struct RegionQuality {
     bool pointConnected = false;     // shares a boundary point with another region
 };
 
-// What a mesh is made of. A cell's shape follows from the sizes of its faces, as checkMesh sees it.
-struct CellShapes { // how many cells of each
+// How many cells of each shape: it follows from the sizes of a cell's faces, as checkMesh sees it.
+struct CellShapes {
     std::int64_t hexahedra = 0, prisms = 0, wedges = 0, pyramids = 0, tetWedges = 0, tetrahedra = 0, polyhedra = 0;
 };
 
+// What a mesh is made of.
 struct MeshStatistics : CellShapes {
     std::int64_t internalPoints = -1; // used by no boundary face; -1 unless these points come first
     std::int64_t edges = 0, internalEdges = 0, internalEdgesOnePoint = 0, internalEdgesTwoPoints = 0; // if not -1
