@@ -34,7 +34,7 @@ class Runs {
     Index pieces() const { return runs_.back().piece; }
     Index internalPieces() const { return runs_[firstBoundary_].piece; }
     Index vertices() const { return runs_.back().vertex; }
-    Index piecesOf(const Run& run) const { return (&run + 1)->piece - run.piece; }
+    Index piecesOf(const Run& run) const { return (&run + 1)->piece - run.piece; } // there is always one more
     Index placeOf(Index boundaryFace) const; // its first piece; of the mesh's last face and one more: the end
 
   private:
@@ -46,6 +46,9 @@ class Runs {
         return {std::min(a, b), std::max(a, b)};
     }
     Index firstAfter(const Sides& s) const;
+    auto firstDivided(Index face) const { // from this one on
+        return std::lower_bound(divided_.begin(), divided_.end(), face, [](const auto& one, Index f) { return Index(one.first) < f; });
+    }
     void addWhole(Index begin, Index end);
     void addAlone(Index face);
     void addUpTo(Index end); // of those that stay where they are
@@ -103,15 +106,14 @@ void Runs::addWhole(Index begin, Index end) {
 }
 
 void Runs::addAlone(Index face) {
-    const auto at = std::lower_bound(divided_.begin(), divided_.end(), face, [](const auto& one, Index f) { return Index(one.first) < f; });
+    const auto at = firstDivided(face);
     const bool isDivided = at != divided_.end() && Index(at->first) == face;
     const bool isTurned = face < mesh_.neighbour.size() && groups_[Index(mesh_.owner[face])] > groups_[Index(mesh_.neighbour[face])];
     runs_.push_back({face, 1, 0, 0, isDivided ? &at->second : nullptr, isTurned});
 }
 
 void Runs::addUpTo(Index end) {
-    auto at = std::lower_bound(divided_.begin(), divided_.end(), next_, [](const auto& one, Index f) { return Index(one.first) < f; });
-    for (; at != divided_.end() && Index(at->first) < end; ++at) {
+    for (auto at = firstDivided(next_); at != divided_.end() && Index(at->first) < end; ++at) {
         addWhole(next_, Index(at->first));
         addAlone(Index(at->first));
         next_ = Index(at->first) + 1;
