@@ -168,7 +168,9 @@ TEST(EditMesh, LeavesLongRunsAsTheyWere) {
         while (now < mesh.faces() && !std::ranges::equal(mesh.face(now), before.face(was))) ++now; // in the order of before
         ASSERT_LT(now, mesh.faces()) << was;
         EXPECT_EQ(mesh.owner[Index(now)], numbers[Index(before.owner[Index(was)])]);
-        if (was < before.internalFaces()) EXPECT_EQ(mesh.neighbour[Index(now)], numbers[Index(before.neighbour[Index(was)])]);
+        if (was < before.internalFaces()) {
+            EXPECT_EQ(mesh.neighbour[Index(now)], numbers[Index(before.neighbour[Index(was)])]);
+        }
     }
 }
 
