@@ -34,7 +34,7 @@ void snapToFeet(Unsnapped& run) {
 
 double worstCorner(const Band& band, const std::vector<Vec3>& x) {
     double worst = 1;
-    for (const Corner& c : band.corners) worst = std::min(worst, scaledJacobian(c, x));
+    band.corners.forAll([&](const Corner& c) { worst = std::min(worst, scaledJacobian(c, x)); });
     return worst;
 }
 

@@ -1,5 +1,5 @@
 // Proves: no step of the fit inverts a corner; the energy falls, ends where its gradient is nought and its
-// gradient is the one that finite differences give; the exact snap keeps the floor; the domain's sides stay
+// gradient is the one that finite differences give; the corners around nodes are those of the band's cells and prisms; the exact snap keeps the floor; the domain's sides stay
 // planes to the last bit; the front stands off as far as layers want; nodes that are to stay do.
 #include "carve/kept_checks.h"
 #include "i2b/carve/carve.h"
@@ -7,6 +7,7 @@
 #include <array>
 #include <atomic>
 #include <gtest/gtest.h>
+#include <set>
 
 namespace i2b::test {
 namespace {
@@ -46,28 +47,64 @@ void forSettings(unsigned kind, const F& f) {
     EXPECT_GT(made, 0);
 }
 
+std::vector<Corner> allCorners(const Band& band) {
+    std::vector<Corner> all;
+    band.corners.forAll([&](const Corner& c) { all.push_back(c); });
+    return all;
+}
+
+std::vector<Corner> cornersAround(const Band& band, std::size_t node) {
+    std::vector<Corner> around;
+    band.corners.around(node, [&](const Corner& c) { around.push_back(c); });
+    return around;
+}
+
 std::size_t inverted(const Band& band, const std::vector<Vec3>& x) {
     std::size_t n = 0;
-    for (const Corner& c : band.corners) n += !(scaledJacobian(c, x) > 0);
+    band.corners.forAll([&](const Corner& c) { n += !(scaledJacobian(c, x) > 0); });
     return n;
 }
 
-double energyOver(const Band& band, std::span<const std::int32_t> corners, const std::vector<Vec3>& x) {
+double energyOver(const std::vector<Corner>& corners, const std::vector<Vec3>& x) {
     double sum = 0;
-    for (std::int32_t c : corners) {
-        const Corner& corner = band.corners[static_cast<std::size_t>(c)];
-        sum += double(corner.weight) * std::pow(cornerEnergy(corner, x), 3);
-    }
+    for (const Corner& c : corners) sum += double(c.weight) * std::pow(cornerEnergy(c, x), 3);
     return sum;
 }
 
-double energyOver(const Band& band, const std::vector<Vec3>& x) {
-    double sum = 0;
-    for (const Corner& c : band.corners) sum += double(c.weight) * std::pow(cornerEnergy(c, x), 3);
-    return sum;
-}
+double energyOver(const Band& band, const std::vector<Vec3>& x) { return energyOver(allCorners(band), x); }
 
 class Fit : public testing::TestWithParam<unsigned> {};
+
+using Key = std::array<std::int32_t, 4>;
+
+// Of boxes these follow from their vertices; cells that nodes hang on, and prisms, have a list of them.
+TEST_P(Fit, CornersAroundTheNodesAreAllThereAre) {
+    std::size_t allBoxes = 0;
+    forSettings(GetParam(), [&](const Setting& s, unsigned seed) {
+        std::multiset<std::pair<std::size_t, Key>> expected, found;
+        std::size_t boxes = 0, notUpright = 0, ofOtherLength = 0;
+        for (const CornerCell& cell : s.band.corners.cells) boxes += cell.level != CornerCell::hasCorners;
+        allBoxes += boxes;
+        const std::size_t listed = s.band.corners.list.size();
+        EXPECT_EQ(allCorners(s.band).size(), 8 * boxes + listed) << "seed " << seed;
+        for (const Corner& c : allCorners(s.band)) {
+            const bool isPrisms = std::ranges::any_of(c.node, [&](std::int32_t n) { return static_cast<std::size_t>(n) < s.band.walls; });
+            notUpright += !isPrisms && !(scaledJacobian(c, s.band.start) > 0.999999); // right-handed, along the axes
+            for (std::size_t k = 0; k < 3 && !isPrisms; ++k) {
+                const double length = norm(s.band.start[static_cast<std::size_t>(c.node[k + 1])] - s.band.start[static_cast<std::size_t>(c.node[0])]);
+                ofOtherLength += std::abs(length * double(c.inverseLength[k]) - 1) > 1e-6;
+            }
+            for (const std::int32_t n : c.node)
+                if (static_cast<std::size_t>(n) < s.band.movable) expected.emplace(n, c.node);
+        }
+        for (std::size_t n = 0; n < s.band.movable; ++n)
+            for (const Corner& c : cornersAround(s.band, n)) found.emplace(n, c.node);
+        EXPECT_EQ(found, expected) << "seed " << seed;
+        EXPECT_EQ(ofOtherLength, 0u) << "seed " << seed;
+        EXPECT_EQ(notUpright, 0u) << "seed " << seed;
+    });
+    EXPECT_GT(allBoxes, 0u);
+}
 
 // Every movable node is in one block, with those of its kind; blocks of one colour share no corner, a wall node is with its front node.
 TEST_P(Fit, BlocksOfOneColourShareNoCorner) {
@@ -91,7 +128,7 @@ TEST_P(Fit, BlocksOfOneColourShareNoCorner) {
             for (const std::uint32_t b : blocks.colours()[c]) colourOf[b] = static_cast<std::int64_t>(c);
         EXPECT_EQ(std::count(colourOf.begin(), colourOf.end(), -1), 0) << "seed " << seed;
         std::size_t clashes = 0;
-        for (const Corner& corner : s.band.corners) {
+        for (const Corner& corner : allCorners(s.band)) {
             for (const std::int32_t m : corner.node) {
                 for (const std::int32_t n : corner.node) {
                     const auto i = static_cast<std::size_t>(m), j = static_cast<std::size_t>(n);
@@ -127,7 +164,7 @@ TEST_P(Fit, BlocksWaitForTheirNeighbours) {
         for (std::size_t c = 0; c < blocks.colours().size(); ++c)
             for (const std::uint32_t b : blocks.colours()[c]) colourOf[b] = c;
         std::size_t tooEarly = 0;
-        for (const Corner& corner : s.band.corners) {
+        for (const Corner& corner : allCorners(s.band)) {
             for (const std::int32_t m : corner.node) {
                 for (const std::int32_t n : corner.node) {
                     const auto i = static_cast<std::size_t>(m), j = static_cast<std::size_t>(n);
@@ -205,7 +242,7 @@ TEST_P(Fit, EnergyFallsAndNoCornerTurnsOver) {
         // The exact snap: a node either keeps its corners above the floor, or makes its worst no worse.
         const auto worst = [&](const std::vector<Vec3>& at) {
             double w = 1;
-            for (const Corner& c : s.band.corners) w = std::min(w, scaledJacobian(c, at));
+            s.band.corners.forAll([&](const Corner& c) { w = std::min(w, scaledJacobian(c, at)); });
             return w;
         };
         const double before = worst(x);
@@ -228,12 +265,13 @@ TEST(Energy, SingleNodesEndWhereTheGradientVanishes) {
     const auto gradientAt = [&](std::size_t n, std::vector<Vec3> x) {
         Vec3 g;
         const double step = 1e-5 * s.band.h[n];
+        const std::vector<Corner> corners = cornersAround(s.band, n);
         for (int a = 0; a < 3; ++a) {
             const double at = x[n][a];
             x[n][a] = at + step;
-            const double up = energyOver(s.band, s.band.cornersOf[n], x);
+            const double up = energyOver(corners, x);
             x[n][a] = at - step;
-            g[a] = (up - energyOver(s.band, s.band.cornersOf[n], x)) / (2 * step) * s.band.h[n];
+            g[a] = (up - energyOver(corners, x)) / (2 * step) * s.band.h[n];
             x[n][a] = at;
         }
         return norm(g);
@@ -241,14 +279,14 @@ TEST(Energy, SingleNodesEndWhereTheGradientVanishes) {
     WallViews views(s.band, *s.painted.index);
     int tried = 0, still = 0;
     for (std::size_t n = 0; n < s.band.movable && tried < 60; n += 1 + s.band.movable / 60) {
-        if (s.band.cornersOf[n].empty() || s.band.outside[n]) continue;
+        const std::vector<Corner> corners = cornersAround(s.band, n);
+        if (corners.empty() || s.band.outside[n]) continue;
         ++tried;
         std::vector<std::uint8_t> one(s.band.movable, 0);
         one[n] = 1;
         std::vector<Vec3> x = s.band.start;
         minimiseEnergy(views, s.features, s.snaps, one, x, options, context);
-        EXPECT_LE(energyOver(s.band, s.band.cornersOf[n], x),
-                  energyOver(s.band, s.band.cornersOf[n], s.band.start));
+        EXPECT_LE(energyOver(corners, x), energyOver(corners, s.band.start));
         for (std::size_t m = 0; m < s.band.nodes(); ++m) ASSERT_TRUE(m == n || x[m] == s.band.start[m]);
         // A way that the geometry bars may end early; few are.
         still += gradientAt(n, x) < 1e-4 * (1 + gradientAt(n, s.band.start));

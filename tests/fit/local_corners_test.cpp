@@ -50,9 +50,9 @@ struct Star {
         const auto place = [&](double a, double b, double c) { return Vec3{a + shake(random), b + shake(random), c + shake(random)}; };
         x.push_back(place(0, 0, 0));
         RawVector<std::int32_t> around(corners);
-        band.corners.resize(corners);
+        band.corners.list.resize(corners);
         for (std::size_t i = 0; i < corners; ++i) {
-            Corner& corner = band.corners[i];
+            Corner& corner = band.corners.list[i];
             const std::array<Vec3, 4> ideal{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
             const std::size_t role = i % 4;
             for (std::size_t k = 0; k < 4; ++k) {
@@ -66,14 +66,15 @@ struct Star {
             corner.weight = i % 3 == 0 ? 4 : 1;
             around[i] = static_cast<std::int32_t>(i);
         }
-        band.cornersOf.fixed.start.resize(2);
-        band.cornersOf.fixed.start[0] = 0, band.cornersOf.fixed.start[1] = static_cast<std::int64_t>(corners);
-        band.cornersOf.fixed.values = std::move(around);
+        band.corners.prismRows = 1;
+        band.corners.cellsOf.start.assign(2, 0);
+        band.corners.prismsOf.start.assign({0, static_cast<std::int64_t>(corners)});
+        band.corners.prismsOf.values = std::move(around);
     }
 
     double plainEnergy(const Vec3& d) const {
         double sum = 0;
-        for (const Corner& c : band.corners) {
+        for (const Corner& c : band.corners.list) {
             std::array<Vec3, 4> p;
             for (std::size_t k = 0; k < 4; ++k) p[k] = x[static_cast<std::size_t>(c.node[k])] + (c.node[k] == 0 ? d : Vec3{});
             double trace = 0;
@@ -128,7 +129,7 @@ TEST(LocalCorners, DerivativesAreThoseOfDifferences) {
 
 TEST(LocalCorners, InsideOutIsInfiniteAndPulledBack) {
     Star star(3, 1); // one corner, whose tip is node 0
-    const Corner& c = star.band.corners[0];
+    const Corner& c = star.band.corners.list[0];
     const auto at = [&](std::size_t k) { return star.x[static_cast<std::size_t>(c.node[k])]; };
     const Vec3 normal = normalized(cross(at(2) - at(1), at(3) - at(1)));
     const Vec3 foot = star.x[0] - normal * dot(star.x[0] - at(1), normal);

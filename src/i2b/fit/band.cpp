@@ -18,7 +18,7 @@ constexpr double heightForRoom = 2.2;
 // An edge of the wall with its length on the front, where it is the lattice's.
 BandEdge wallEdge(const Band& band, std::int32_t a, std::int32_t b) {
     const auto frontOf = [&](std::int32_t w) { return static_cast<std::size_t>(band.frontNode[static_cast<std::size_t>(w)]); };
-    return {a, b, static_cast<float>(band.h[static_cast<std::size_t>(a)] / norm(band.start[frontOf(b)] - band.start[frontOf(a)]))};
+    return {b, static_cast<float>(band.h[static_cast<std::size_t>(a)] / norm(band.start[frontOf(b)] - band.start[frontOf(a)]))};
 }
 
 // Rows of item numbers, ascending in each. row(i, put) calls put(r) for every row of an item.
@@ -29,12 +29,29 @@ Csr<std::int32_t> rowsOf(std::size_t rows, std::size_t first, std::size_t last, 
     return csr;
 }
 
-// Rows of corners [first, last), numbers ascending.
-Csr<std::int32_t> rowsOfCorners(const Band& band, std::size_t rows, std::size_t first, std::size_t last) {
-    return rowsOf(rows, first, last, [&](std::size_t c, const auto& put) {
-        for (std::int32_t n : band.corners[c].node) {
+// The cells of the core around each movable node.
+Csr<std::int32_t> rowsOfCells(const BandCorners& corners, std::size_t rows) {
+    return rowsOf(rows, 0, corners.cells.size(), [&](std::size_t c, const auto& put) {
+        const auto offer = [&](std::int32_t n) {
             if (static_cast<std::size_t>(n) < rows) put(static_cast<std::size_t>(n));
+        };
+        const CornerCell& cell = corners.cells[c];
+        if (cell.level != CornerCell::hasCorners) return std::ranges::for_each(cell.node, offer), void();
+        // Each node once, at the first of the cell's corners that has it.
+        for (std::int32_t i = cell.node[0]; i < cell.node[1]; ++i) {
+            for (const std::int32_t n : corners.list[static_cast<std::size_t>(i)].node) {
+                std::int32_t first = cell.node[0];
+                while (!corners.list[static_cast<std::size_t>(first)].has(n)) ++first;
+                if (first == i) offer(n);
+            }
         }
+    });
+}
+
+// The prisms' corners around each wall and front node, numbers ascending.
+Csr<std::int32_t> rowsOfPrisms(const BandCorners& corners, std::size_t rows) {
+    return rowsOf(rows, corners.prisms, corners.list.size(), [&](std::size_t c, const auto& put) {
+        for (const std::int32_t n : corners.list[c].node) put(static_cast<std::size_t>(n));
     });
 }
 
@@ -70,53 +87,29 @@ Csr<BandEdge> edgesOf(std::size_t rows, const std::vector<BandPieces>& pieces, c
 }
 
 // In the order of the pieces; room: for how many more memory is taken at once.
-void appendCorners(Band& band, const std::vector<BandPieces>& pieces, std::size_t room = 0) {
-    std::vector<std::size_t> first;
-    for (const BandPieces& p : pieces) first.push_back(p.corners.size());
-    const std::size_t before = band.corners.size();
-    const std::size_t count = before + exclusiveScan(first);
-    band.corners.reserve(count + room);
-    band.corners.resize(count);
+void appendCells(BandCorners& corners, const std::vector<BandPieces>& pieces, std::size_t room) {
+    std::vector<std::size_t> first, firstCell;
+    for (const BandPieces& p : pieces) first.push_back(p.corners.size()), firstCell.push_back(p.cells.size());
+    corners.prisms = exclusiveScan(first);
+    corners.cells.resize(exclusiveScan(firstCell));
+    corners.list.reserve(corners.prisms + room);
+    corners.list.resize(corners.prisms);
     parallelFor(pieces.size(), [&](std::size_t p) {
-        std::copy(pieces[p].corners.begin(), pieces[p].corners.end(), band.corners.begin() + static_cast<std::ptrdiff_t>(before + first[p]));
+        std::ranges::copy(pieces[p].corners, corners.list.begin() + static_cast<std::ptrdiff_t>(first[p]));
+        for (std::size_t i = 0; i < pieces[p].cells.size(); ++i) {
+            CornerCell& cell = corners.cells[firstCell[p] + i] = pieces[p].cells[i];
+            if (cell.level == CornerCell::hasCorners) cell.node[0] += static_cast<std::int32_t>(first[p]), cell.node[1] += static_cast<std::int32_t>(first[p]);
+        }
     }, 1);
 }
 
-// Corners and wall edges of the prisms; in the rows of wall nodes there are no others.
-void addPrisms(Band& band, const Front& front) {
-    const std::size_t faces = front.ownerCell.size();
-    std::vector<BandPieces> pieces((faces + 2047) / 2048);
-    parallelChunks(faces, 2048, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        pieces[chunk].corners.reserve(8 * (end - begin)), pieces[chunk].edges.reserve(4 * (end - begin));
-        for (std::size_t f = begin; f < end; ++f) addPrism(band, front, f, pieces[chunk]);
-    });
-    appendCorners(band, pieces);
-    const std::size_t touched = band.cornersOf.changingRows = band.walls + band.fronts;
-    const Csr<std::int32_t>& core = band.cornersOf.fixed;
-    const Csr<std::int32_t> prisms = rowsOfCorners(band, touched, band.coreCorners, band.corners.size());
-    Csr<std::int32_t>& corners = band.cornersOf.changing;
-    corners.values.clear(); // so that none is copied when there are more
-    corners.start.resize(touched + 1);
-    parallelFor(touched, [&](std::size_t n) { corners.start[n] = static_cast<std::int64_t>(core[n].size() + prisms[n].size()); });
-    corners.start[touched] = 0;
-    corners.values.resize(static_cast<std::size_t>(exclusiveScan(corners.start)));
-    parallelFor(touched, [&](std::size_t n) {
-        std::int32_t* const to = std::copy(core[n].begin(), core[n].end(), corners.values.data() + corners.start[n]);
-        std::copy(prisms[n].begin(), prisms[n].end(), to);
-    });
-    const Csr<BandEdge> wall = edgesOf(band.walls, pieces, [&](std::int32_t a, std::int32_t b) { return wallEdge(band, a, b); });
-    // Each wall node has its front node last: higher in number than all wall nodes.
-    band.edges.changingRows = band.walls;
-    Csr<BandEdge>& edges = band.edges.changing;
-    edges.values.clear();
-    edges.values.resize(wall.values.size() + band.walls);
-    edges.start.resize(band.walls + 1);
-    edges.start[band.walls] = static_cast<std::int64_t>(edges.values.size());
-    parallelFor(band.walls, [&](std::size_t v) {
-        edges.start[v] = wall.start[v] + static_cast<std::int64_t>(v);
-        BandEdge* const end = std::copy(wall[v].begin(), wall[v].end(), edges.values.data() + edges.start[v]);
-        *end = {static_cast<std::int32_t>(v), band.frontNode[v], 1};
-    });
+std::vector<std::array<float, 3>> inverseSizes(const LatticeMesh& mesh) {
+    std::vector<std::array<float, 3>> sizes;
+    for (int l = 0; l < mesh.levels(); ++l) {
+        const Vec3 size = mesh.lattice().corner(l, {1, 1, 1}) - mesh.lattice().corner(l, {0, 0, 0});
+        sizes.push_back({static_cast<float>(1 / size.x), static_cast<float>(1 / size.y), static_cast<float>(1 / size.z)});
+    }
+    return sizes;
 }
 
 // Numbers the band's core points: front, then movable, then fixed; within each in order of their numbers.
@@ -246,10 +239,10 @@ Band buildBand(const LatticeMesh& mesh, const Front& front, int rings, const Wan
             }
         });
     }
-    appendCorners(band, pieces, 2 * front.mesh.n_halfedges() * 5 / 4); // those of the prisms, of vertices put in later, too
-    band.coreCorners = band.corners.size();
+    appendCells(band.corners, pieces, 2 * front.mesh.n_halfedges() * 5 / 4); // those of the prisms, of vertices put in later, too
+    band.corners.inverseSize = inverseSizes(mesh);
     band.parents = parentsOf(band.nodes(), pieces);
-    for (BandPieces& p : pieces) giveUp(p.corners, p.hanging);
+    for (BandPieces& p : pieces) giveUp(p.cells, p.corners, p.hanging);
     const std::size_t chunk = 4096, before = pieces.size(); // and the front's nodes with the wall's
     pieces.resize(before + (band.walls + chunk - 1) / chunk);
     parallelChunks(band.walls, chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
@@ -258,21 +251,50 @@ Band buildBand(const LatticeMesh& mesh, const Front& front, int rings, const Wan
     // Core edges away from the front weigh as much less, or more, at front nodes as prisms are to be lower, or higher.
     band.edges.fixed = edgesOf(band.nodes(), pieces, [&](std::int32_t a, std::int32_t b) {
         const auto p = static_cast<std::size_t>(a), q = static_cast<std::size_t>(b), core = band.walls + band.fronts;
-        if (p < band.walls || q < band.walls) return BandEdge{a, b, 1};
-        BandEdge e{a, b, static_cast<float>(band.h[p] / norm(band.start[q] - band.start[p]))};
+        if (p < band.walls || q < band.walls) return BandEdge{b, 1};
+        BandEdge e{b, static_cast<float>(band.h[p] / norm(band.start[q] - band.start[p]))};
         if (p < core && q >= core) e.weight *= static_cast<float>(band.prismHeight(p));
         return e;
     });
     giveUp(pieces);
-    band.cornersOf.fixed = rowsOfCorners(band, band.movable, 0, band.coreCorners);
-    addPrisms(band, front);
+    band.corners.cellsOf = rowsOfCells(band.corners, band.movable);
+    renewPrisms(band, front);
     band.blocks = NodeBlocks(band);
     return band;
 }
 
+// In the rows of wall nodes there are no edges but these and those to the front.
 void renewPrisms(Band& band, const Front& front) {
-    band.corners.resize(band.coreCorners);
-    addPrisms(band, front);
+    constexpr std::size_t chunk = 2048;
+    const std::size_t faces = front.ownerCell.size();
+    std::vector<BandPieces> pieces((faces + chunk - 1) / chunk);
+    std::vector<std::size_t> first(pieces.size());
+    parallelChunks(faces, chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+        pieces[c].edges.reserve(4 * (end - begin));
+        for (std::size_t f = begin; f < end; ++f) first[c] += addPrism(band, front, f, {&pieces[c].edges});
+    });
+    band.corners.list.resize(band.corners.prisms); // so that none is copied when there are more
+    band.corners.list.resize(band.corners.prisms + exclusiveScan(first));
+    parallelChunks(faces, chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+        Corner* next = band.corners.list.data() + band.corners.prisms + first[c];
+        for (std::size_t f = begin; f < end; ++f) next += addPrism(band, front, f, {nullptr, next});
+    });
+    band.corners.prismRows = band.walls + band.fronts;
+    giveUp(band.corners.prismsOf.values);
+    band.corners.prismsOf = rowsOfPrisms(band.corners, band.corners.prismRows);
+    const Csr<BandEdge> wall = edgesOf(band.walls, pieces, [&](std::int32_t a, std::int32_t b) { return wallEdge(band, a, b); });
+    // Each wall node has its front node last: higher in number than all wall nodes.
+    band.edges.changingRows = band.walls;
+    Csr<BandEdge>& edges = band.edges.changing;
+    edges.values.clear();
+    edges.values.resize(wall.values.size() + band.walls);
+    edges.start.resize(band.walls + 1);
+    edges.start[band.walls] = static_cast<std::int64_t>(edges.values.size());
+    parallelFor(band.walls, [&](std::size_t v) {
+        edges.start[v] = wall.start[v] + static_cast<std::int64_t>(v);
+        BandEdge* const end = std::copy(wall[v].begin(), wall[v].end(), edges.values.data() + edges.start[v]);
+        *end = {band.frontNode[v], 1};
+    });
 }
 
 } // namespace i2b

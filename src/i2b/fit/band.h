@@ -2,49 +2,19 @@
 // of the front. Nodes are the wall positions b (one a fan), then core points: front points f, rings behind, and the
 // fixed points of the outermost cells.
 #pragma once
-#include "i2b/core/raw_vector.h"
+#include "i2b/fit/band_corners.h"
 #include "i2b/fit/blocks.h"
+#include "i2b/fit/csr.h"
 #include "i2b/front/front.h"
 #include "i2b/front/wanted_room.h"
-#include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace i2b {
 
-// A corner tetrahedron: node[0] and its three neighbours along the edges of a cell, positively oriented. With
-// J = [(x1-x0)/length1, (x2-x0)/length2, (x3-x0)/length3] an ideal corner has J^T J = 1 and det J = 1.
-struct Corner {
-    std::array<std::int32_t, 4> node{};
-    std::array<float, 3> inverseLength{}; // 1/m
-    float weight = 1;                     // in the energy: prism corners count more
-};
-
 struct BandEdge {
-    std::int32_t a = 0, b = 0;
+    std::int32_t b = 0;                   // the other end
     float weight = 1;                     // in Laplacians: h / lattice length, less across the front
-    friend auto operator<=>(const BandEdge& x, const BandEdge& y) {
-        return x.a != y.a ? x.a <=> y.a : x.b <=> y.b;
-    }
-    friend bool operator==(const BandEdge& x, const BandEdge& y) { return x.a == y.a && x.b == y.b; }
-};
-
-template <class T>
-struct Csr { // rows of values
-    RawVector<std::int64_t> start;        // rows + 1
-    RawVector<T> values;
-    std::span<const T> operator[](std::size_t row) const {
-        return {values.data() + start[row], values.data() + start[row + 1]};
-    }
-};
-
-// Rows the first of which change: these are by themselves, beside what they are made from.
-template <class T>
-struct ChangingCsr {
-    Csr<T> changing, fixed;
-    std::size_t changingRows = 0;
-    std::span<const T> operator[](std::size_t row) const { return row < changingRows ? changing[row] : fixed[row]; }
 };
 
 struct Band {
@@ -62,10 +32,8 @@ struct Band {
     std::vector<Vec3> away;               // m, per front node (less walls), up to startPositions(): the middle of the cells straight off its wall
     std::vector<std::uint8_t> behind;     // per front node (less walls): starts behind geometry, seen from inside
     Csr<std::int32_t> fansOf;             // per front node (less walls): its wall nodes
-    RawVector<Corner> corners;            // the core's, then the prisms'
-    std::size_t coreCorners = 0;
-    ChangingCsr<std::int32_t> cornersOf;  // per movable node; fixed: of the core's
-    ChangingCsr<BandEdge> edges;          // per node: a is the node itself, b the other end; fixed: but those of the wall
+    BandCorners corners;
+    ChangingCsr<BandEdge> edges;          // per node; fixed: but those of the wall
     Csr<std::int32_t> parents;            // per node: ends of the coarse edge or face on whose middle it hangs; or none
 
     NodeBlocks blocks;                    // of the movable nodes

@@ -1,6 +1,5 @@
 #include "i2b/fit/band_pieces.h"
 #include <algorithm>
-#include <bit>
 
 namespace i2b {
 namespace {
@@ -25,24 +24,18 @@ double stretch(const Vec3& size, const Vec3& normal) {
     return size[axis] / std::min(size[(axis + 1) % 3], size[(axis + 2) % 3]);
 }
 
-// A cell with eight vertices, in the order in which its faces name them.
-void addBox(const Band& band, const Index3& c, const std::array<std::int32_t, 8>& nodes, CoreCellRoom& room, BandPieces& out) {
+void addBox(int level, const Index3& c, const std::array<std::int32_t, 8>& nodes, CoreCellRoom& room, BandPieces& out) {
     const Index3 low{c[0] & 7, c[1] & 7, c[2] & 7};
     const auto end = [&](std::size_t k) { return Index3{low[0] + int(k & 1), low[1] + int(k >> 1 & 1), low[2] + int(k >> 2)}; };
-    for (const std::size_t k : {0u, 4u, 6u, 2u, 1u, 3u, 7u, 5u}) {
-        const Vec3& x = band.start[static_cast<std::size_t>(nodes[k])];
-        Corner corner{{nodes[k], -1, -1, -1}, {}, 1};
+    for (std::size_t k = 0; k < 8; ++k) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const std::int32_t n = nodes[k ^ std::size_t(1) << axis];
-            corner.node[axis + 1] = n;
-            corner.inverseLength[axis] = static_cast<float>(1 / norm(band.start[static_cast<std::size_t>(n)] - x));
             if (n <= nodes[k]) continue;
             const std::uint64_t key = edgeKey(nodes[k], n);
             if (room.isNew(end(k & ~(std::size_t(1) << axis)), axis, key)) out.edges.push_back(key);
         }
-        if (std::popcount(k) % 2 != 0) std::swap(corner.node[1], corner.node[2]), std::swap(corner.inverseLength[0], corner.inverseLength[1]);
-        out.corners.push_back(corner);
     }
+    out.cells.push_back({nodes, level});
 }
 
 } // namespace
@@ -51,7 +44,7 @@ void addCoreCell(const Band& band, LatticeMesh::Reader& reader, int level, const
                  const std::vector<std::int32_t>& nodeOf, CoreCellRoom& room, BandPieces& out) {
     if (std::array<std::int32_t, 8> nodes; reader.corners(level, c, nodes)) {
         for (std::int32_t& n : nodes) n = nodeOf[static_cast<std::size_t>(n)];
-        addBox(band, c, nodes, room, out);
+        addBox(level, c, nodes, room, out);
         return;
     }
     std::vector<CellVertex>& vertices = room.vertices;
@@ -65,6 +58,7 @@ void addCoreCell(const Band& band, LatticeMesh::Reader& reader, int level, const
             vertices[vertexOf(vertices, b)].next[static_cast<std::size_t>(d ^ 1)] = a;
         }
     });
+    const auto first = static_cast<std::int32_t>(out.corners.size());
     for (const CellVertex& v : vertices) {
         const Vec3& x = band.start[static_cast<std::size_t>(v.node)];
         const auto lengthTo = [&](std::int32_t n) { return norm(band.start[static_cast<std::size_t>(n)] - x); };
@@ -92,25 +86,30 @@ void addCoreCell(const Band& band, LatticeMesh::Reader& reader, int level, const
             out.corners.push_back(corner);
         }
     }
+    out.cells.push_back({{first, static_cast<std::int32_t>(out.corners.size())}, CornerCell::hasCorners});
 }
 
-void addPrism(const Band& band, const Front& front, std::size_t f, BandPieces& out) {
+std::size_t addPrism(const Band& band, const Front& front, std::size_t f, const PrismPieces& out) {
     std::array<std::int32_t, 8> wall{};
     int n = 0;
     for (auto v : front.mesh.fv_range(FrontMesh::FaceHandle(static_cast<int>(f)))) wall[static_cast<std::size_t>(n++)] = v.idx();
+    std::size_t corners = 0;
     for (int i = 0; i < n; ++i) {
         const std::int32_t b = wall[static_cast<std::size_t>(i)], next = wall[static_cast<std::size_t>((i + 1) % n)], previous = wall[static_cast<std::size_t>((i + n - 1) % n)];
         const auto frontOf = [&](std::int32_t w) { return band.frontNode[static_cast<std::size_t>(w)]; };
         const auto at = [&](std::int32_t node) { return band.start[static_cast<std::size_t>(node)]; };
         const Vec3 x = at(frontOf(b)), e1 = at(frontOf(next)) - x, e2 = at(frontOf(previous)) - x;
-        const double l1 = norm(e1), l2 = norm(e2);
-        out.edges.push_back(edgeKey(std::min(b, next), std::max(b, next)));
+        if (out.edges) out.edges->push_back(edgeKey(std::min(b, next), std::max(b, next)));
         if (norm2(cross(e1, e2)) < 0.25 * norm2(e1) * norm2(e2)) continue; // hangs on this polygon's edge
+        corners += 2;
+        if (!out.corners) continue;
+        const double l1 = norm(e1), l2 = norm(e2);
         const double height = band.prismHeight(static_cast<std::size_t>(b)) * std::min(l1, l2) * stretch(front.size[static_cast<std::size_t>(b)], cross(e1, e2));
         const auto il1 = static_cast<float>(1 / l1), il2 = static_cast<float>(1 / l2), ih = static_cast<float>(1 / height);
-        out.corners.push_back({{frontOf(b), frontOf(next), frontOf(previous), b}, {il1, il2, ih}, 4});
-        out.corners.push_back({{b, previous, next, frontOf(b)}, {il2, il1, ih}, 4});
+        out.corners[corners - 2] = {{frontOf(b), frontOf(next), frontOf(previous), b}, {il1, il2, ih}, 4};
+        out.corners[corners - 1] = {{b, previous, next, frontOf(b)}, {il2, il1, ih}, 4};
     }
+    return corners;
 }
 
 } // namespace i2b

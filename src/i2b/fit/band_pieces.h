@@ -16,6 +16,7 @@ constexpr std::uint64_t edgeKey(std::int32_t a, std::int32_t b) { return std::ui
 
 // What some cells contribute.
 struct BandPieces {
+    std::vector<CornerCell> cells;    // node[0], node[1] of those with corners: in this list
     std::vector<Corner> corners;
     std::vector<std::uint64_t> edges; // the lower node first; some more than once
     std::vector<Hanging> hanging;
@@ -46,7 +47,13 @@ struct CoreCellRoom {
 void addCoreCell(const Band& band, LatticeMesh::Reader& reader, int level, const Index3& c, const std::vector<std::int32_t>& nodeOf, CoreCellRoom& room,
                  BandPieces& out);
 
-// The prism on face f of the front.
-void addPrism(const Band& band, const Front& front, std::size_t f, BandPieces& out);
+// Where the prisms' go; null: not asked for.
+struct PrismPieces {
+    std::vector<std::uint64_t>* edges = nullptr; // of the wall
+    Corner* corners = nullptr;                   // the prism's are written from here on
+};
+
+// The prism on face f of the front. Gives how many corners it has.
+std::size_t addPrism(const Band& band, const Front& front, std::size_t f, const PrismPieces& out);
 
 } // namespace i2b

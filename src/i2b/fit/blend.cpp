@@ -59,18 +59,18 @@ void markBadCorners(const Band& band, const std::vector<Vec3>& x, double limit, 
         return static_cast<std::size_t>(std::count(from + static_cast<std::ptrdiff_t>(begin), from + static_cast<std::ptrdiff_t>(end), std::uint8_t(1)));
     }, std::plus<>(), 1 << 16);
     if (moved > band.movable / 8) {
-        parallelFor(band.corners.size(), [&](std::size_t c) {
-            const Corner& corner = band.corners[c];
-            if (std::any_of(corner.node.begin(), corner.node.end(), isMoved)) judge(corner);
-        }, 1024);
+        parallelFor(band.corners.items(), [&](std::size_t i) {
+            band.corners.ofItem(i, [&](const Corner& corner) {
+                if (std::ranges::any_of(corner.node, isMoved)) judge(corner);
+            });
+        }, 256);
         return;
     }
     forFlagged(progress.moved, [&](std::size_t n) {
-        for (std::int32_t c : band.cornersOf[n]) {
-            const Corner& corner = band.corners[static_cast<std::size_t>(c)];
-            const std::int32_t first = *std::find_if(corner.node.begin(), corner.node.end(), isMoved);
+        band.corners.around(n, [&](const Corner& corner) {
+            const std::int32_t first = *std::ranges::find_if(corner.node, isMoved);
             if (static_cast<std::size_t>(first) == n) judge(corner);
-        }
+        });
     });
 }
 
@@ -145,15 +145,17 @@ double scaledJacobian(const Corner& c, const std::vector<Vec3>& x) {
 
 double worstCorner(const Band& band, std::size_t node, const std::vector<Vec3>& x) {
     double worst = 1;
-    for (const std::int32_t c : band.cornersOf[node]) worst = std::min(worst, scaledJacobian(band.corners[static_cast<std::size_t>(c)], x));
+    band.corners.around(node, [&](const Corner& c) { worst = std::min(worst, scaledJacobian(c, x)); });
     return worst;
 }
 
 std::vector<std::uint8_t> nodesOfPoorCorners(const Band& band, const std::vector<Vec3>& x, double limit) {
     std::vector<std::uint8_t> poor(band.nodes(), 0);
-    parallelFor(band.corners.size(), [&](std::size_t c) {
-        if (const TraceAndDet look = lookAt(band.corners[c], x); !energyExceeds(look.trace, look.det, limit)) return;
-        for (std::int32_t n : band.corners[c].node) setFlag(poor[static_cast<std::size_t>(n)]);
+    parallelFor(band.corners.items(), [&](std::size_t i) {
+        band.corners.ofItem(i, [&](const Corner& c) {
+            if (const TraceAndDet look = lookAt(c, x); !energyExceeds(look.trace, look.det, limit)) return;
+            for (std::int32_t n : c.node) setFlag(poor[static_cast<std::size_t>(n)]);
+        });
     });
     poor.resize(band.movable);
     return poor;

@@ -38,8 +38,9 @@ void forNodesAround(const Band& band, std::size_t n, const F& f) {
     const auto offer = [&](std::int32_t m) {
         if (static_cast<std::size_t>(m) < band.movable) f(static_cast<std::size_t>(m));
     };
-    for (const std::int32_t c : band.cornersOf[n])
-        for (const std::int32_t m : band.corners[static_cast<std::size_t>(c)].node) offer(m);
+    band.corners.around(n, [&](const Corner& c) {
+        for (const std::int32_t m : c.node) offer(m);
+    });
     if (n < band.walls) offer(band.frontNode[n]);
     if (kindOf(band, n) == NodeBlocks::front)
         for (const std::int32_t fan : band.fansOf[n - band.walls]) offer(fan);

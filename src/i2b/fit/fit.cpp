@@ -166,6 +166,17 @@ void seekOnce(Front& front, WallViews& views, const FeatureIndex& features, std:
     }
 }
 
+// The nodes on their way to the closest points of the wall, as far as the corners stay good.
+std::vector<Vec3> projected(Band& band, const SurfaceIndex& index, const FeatureIndex& features, int sweeps, const Context& context, FitSummary& summary) {
+    const std::vector<Vec3> start = startPositions(band, index);
+    const std::vector<Vec3> goal = goalPositions(band, index, start, sweeps);
+    context.checkCancelled();
+    std::vector<Vec3> x;
+    const std::vector<double> alpha = blend(band, start, goal, x, nodesAtLines(band, features, goal));
+    for (std::size_t v = 0; v < band.walls; ++v) summary.blended += alpha[v] == 1;
+    return x;
+}
+
 } // namespace
 
 FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& index, const FeatureGraph& graph,
@@ -177,13 +188,8 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     summary.wallNodes = band.walls;
     front.hanging = hangingPoints(band);
     context.checkCancelled();
-    const std::vector<Vec3> start = startPositions(band, index);
-    const std::vector<Vec3> goal = goalPositions(band, index, start, options.sweeps);
-    context.checkCancelled();
     const FeatureIndex features(graph);
-    std::vector<Vec3> x;
-    const std::vector<double> alpha = blend(band, start, goal, x, nodesAtLines(band, features, goal));
-    for (std::size_t v = 0; v < band.walls; ++v) summary.blended += alpha[v] == 1;
+    std::vector<Vec3> x = projected(band, index, features, options.sweeps, context, summary);
 
     WallViews views(band, index);
     std::vector<Snap> snaps(band.walls);

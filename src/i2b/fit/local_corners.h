@@ -95,23 +95,26 @@ class LocalCorners {
     std::size_t groups() const { return (count_ + CornerLanes::count - 1) / CornerLanes::count; }
 
     std::size_t count_ = 0;
+    std::vector<Corner> around_;
     std::vector<Group> groups_;
 };
 
 inline void LocalCorners::gather(const Band& band, std::size_t node, const std::vector<Vec3>& x) {
-    const std::span<const std::int32_t> corners = band.cornersOf[node];
-    count_ = corners.size();
-    if (groups_.size() < groups()) groups_.resize(groups());
     // What a node needs is seldom near what the one before had: all of it is asked for before any is used.
-    for (const std::int32_t c : corners) __builtin_prefetch(&band.corners[static_cast<std::size_t>(c)]);
-    for (const std::int32_t c : corners)
-        for (const std::int32_t m : band.corners[static_cast<std::size_t>(c)].node) __builtin_prefetch(&x[static_cast<std::size_t>(m)]);
+    band.corners.prefetchAround(node);
+    around_.clear();
+    band.corners.around(node, [&](const Corner& c) {
+        for (const std::int32_t m : c.node) __builtin_prefetch(&x[static_cast<std::size_t>(m)]);
+        around_.push_back(c);
+    });
+    count_ = around_.size();
+    if (groups_.size() < groups()) groups_.resize(groups());
     const auto self = static_cast<std::int32_t>(node);
     const auto roleOf = [&](const Corner& c) { return double((c.node[1] == self) + 2 * (c.node[2] == self) + 3 * (c.node[3] == self)); };
     for (std::size_t i = 0; i < groups(); ++i) {
         std::array<const Corner*, CornerLanes::count> corner; // the last one fills up, without weight
         for (std::size_t k = 0; k < CornerLanes::count; ++k)
-            corner[k] = &band.corners[static_cast<std::size_t>(corners[std::min(CornerLanes::count * i + k, count_ - 1)])];
+            corner[k] = &around_[std::min(CornerLanes::count * i + k, count_ - 1)];
         const auto lanes = [&](const auto& of) { return CornerLanes(of(*corner[0]), of(*corner[1]), of(*corner[2]), of(*corner[3])); };
         const auto place = [&](std::size_t k) {
             const auto at = [&](std::size_t lane) -> const Vec3& { return x[static_cast<std::size_t>(corner[lane]->node[k])]; };

@@ -38,16 +38,16 @@ bool sheetBetween(const Node& node) {
 // The least scaled Jacobian of the corners at the node, were it at b.
 double worstCornerAt(const Node& node, const Vec3& b) {
     double worst = 1;
-    for (std::int32_t c : node.band.cornersOf[node.n]) {
+    node.band.corners.around(node.n, [&](const Corner& c) {
         std::array<Vec3, 4> p;
         for (std::size_t k = 0; k < 4; ++k) {
-            const auto m = static_cast<std::size_t>(node.band.corners[static_cast<std::size_t>(c)].node[k]);
+            const auto m = static_cast<std::size_t>(c.node[k]);
             p[k] = m == node.n ? b : node.x[m];
         }
         const Vec3 e1 = p[1] - p[0], e2 = p[2] - p[0], e3 = p[3] - p[0];
         const double lengths = norm(e1) * norm(e2) * norm(e3);
         worst = std::min(worst, lengths > 0 ? dot(cross(e1, e2), e3) / lengths : -1);
-    }
+    });
     return worst;
 }
 
