@@ -42,16 +42,12 @@ bool anyBeyond(LocalEdits::Surroundings around, const DictionaryLimits& dictiona
     return judge(around, dictionary).faces > 0;
 }
 
-bool hasNoMoreTwice(const PolyMesh& now, const PolyMesh& before) {
-    const auto count = [](const PolyMesh& mesh) {
-        const QualityLimits limits;
-        const DictionaryLimits dictionary;
-        Measurement m{mesh, limits, dictionary, {}, {}, {}, {}, {}, {}, {}};
-        measureFaceFaces(m, buildPointFaces(mesh));
-        return m.report.duplicateFaces;
-    };
-    const std::int64_t twice = count(now);
-    return twice == 0 || twice <= count(before);
+std::int64_t facesTwice(const PolyMesh& mesh) {
+    const QualityLimits limits;
+    const DictionaryLimits dictionary;
+    Measurement m{mesh, limits, dictionary, {}, {}, {}, {}, {}, {}, {}};
+    measureFaceFaces(m, buildPointFaces(mesh));
+    return m.report.duplicateFaces;
 }
 
 bool isBetter(const Verdict& now, const Verdict& before) {
@@ -171,7 +167,7 @@ bool Changer::helps(const Trial& united) const {
     const Verdict before = judge(was, limits_);
     if (before.faces == 0) return false;
     const LocalEdits::Surroundings now = edits_.around(united);
-    return isBetter(judge(now, limits_), before) && hasNoMoreTwice(now.mesh, was.mesh);
+    return isBetter(judge(now, limits_), before) && hasNoMoreTwice(now.mesh, [&]() -> const PolyMesh& { return was.mesh; });
 }
 
 std::size_t Changer::HashGroups::operator()(const std::vector<std::int32_t>& groups) const {
@@ -236,7 +232,7 @@ std::optional<LocalEdits::Trial> Changer::divide(std::int32_t face, const PolyMe
     for (const Trial& trial : divisionsOf(face)) {
         const LocalEdits::Surroundings now = edits_.around(trial);
         const Verdict v = judge(now, limits_);
-        if (isBetter(v, least) && hasNoMoreTwice(now.mesh, whole)) least = v, best = trial;
+        if (isBetter(v, least) && hasNoMoreTwice(now.mesh, [&]() -> const PolyMesh& { return whole; })) least = v, best = trial;
     }
     return best;
 }
@@ -274,7 +270,7 @@ bool areBetter(const LocalEdits& before, const LocalEdits& then, const LocalEdit
     for (const std::int32_t g : groups) after.push_back(both.of(g));
     sortUnique(after);
     const LocalEdits::Surroundings now = both.around({after}), was = before.around({groups});
-    return isBetter(judge(now, limits), judge(was, limits)) && hasNoMoreTwice(now.mesh, was.mesh);
+    return isBetter(judge(now, limits), judge(was, limits)) && hasNoMoreTwice(now.mesh, [&]() -> const PolyMesh& { return was.mesh; });
 }
 
 } // namespace

@@ -106,6 +106,9 @@ bool Inserter::stepAsideWhereRefused(const std::vector<FaceCuts>& cuts) {
 void Inserter::apply(const std::vector<FaceCuts>& cuts) {
     std::vector<std::int32_t> vertexOf(crossings_.size(), -1);
     const auto lattice = static_cast<std::int32_t>(front_.corePoints);
+    const auto added = static_cast<std::size_t>(std::ranges::count_if(crossings_, &EdgeCrossing::alive));
+    const auto makeRoomIn = [&](auto&... lists) { (lists.reserve(lists.size() + added), ...); }; // once, and no more than it takes
+    makeRoomIn(front_.corePoint, front_.front, front_.h, front_.size, front_.inside, front_.direction, front_.outside, snaps_);
     for (std::size_t i = 0; i < crossings_.size(); ++i) {
         const EdgeCrossing& c = crossings_[i];
         if (!c.alive) continue;
