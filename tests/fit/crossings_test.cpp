@@ -32,7 +32,7 @@ void snapToFeet(Unsnapped& run) {
     }
 }
 
-double worstCorner(const Band& band, const std::vector<Vec3>& x) {
+double worstCorner(const Band& band, const Positions& x) {
     double worst = 1;
     band.corners.forAll([&](const Corner& c) { worst = std::min(worst, scaledJacobian(c, x)); });
     return worst;

@@ -59,19 +59,19 @@ std::vector<Corner> cornersAround(const Band& band, std::size_t node) {
     return around;
 }
 
-std::size_t inverted(const Band& band, const std::vector<Vec3>& x) {
+std::size_t inverted(const Band& band, const Positions& x) {
     std::size_t n = 0;
     band.corners.forAll([&](const Corner& c) { n += !(scaledJacobian(c, x) > 0); });
     return n;
 }
 
-double energyOver(const std::vector<Corner>& corners, const std::vector<Vec3>& x) {
+double energyOver(const std::vector<Corner>& corners, const Positions& x) {
     double sum = 0;
     for (const Corner& c : corners) sum += double(c.weight) * std::pow(cornerEnergy(c, x), 3);
     return sum;
 }
 
-double energyOver(const Band& band, const std::vector<Vec3>& x) { return energyOver(allCorners(band), x); }
+double energyOver(const Band& band, const Positions& x) { return energyOver(allCorners(band), x); }
 
 class Fit : public testing::TestWithParam<unsigned> {};
 
@@ -181,9 +181,9 @@ TEST_P(Fit, BlocksWaitForTheirNeighbours) {
 TEST_P(Fit, StartIsValidAndBlendStaysSo) {
     forSettings(GetParam(), [](const Setting& s, unsigned seed) {
         EXPECT_EQ(inverted(s.band, s.band.start), 0u) << "seed " << seed;
-        const std::vector<Vec3> goal = goalPositions(s.band, *s.painted.index, s.band.start, 4);
-        std::vector<Vec3> x;
-        const std::vector<double> alpha = blend(s.band, s.band.start, goal, x);
+        const Positions goal = goalPositions(s.band, *s.painted.index, s.band.start, 4);
+        Positions x;
+        const RawVector<double> alpha = blend(s.band, s.band.start, goal, x);
         EXPECT_EQ(inverted(s.band, x), 0u) << "seed " << seed;
         for (std::size_t n = 0; n < s.band.movable; ++n) {
             ASSERT_TRUE(alpha[n] >= 0 && alpha[n] <= 1);
@@ -191,7 +191,7 @@ TEST_P(Fit, StartIsValidAndBlendStaysSo) {
         }
         for (std::size_t n = s.band.movable; n < s.band.nodes(); ++n) ASSERT_EQ(x[n], s.band.start[n]);
         // Goals that no mesh could follow are blended just as safely.
-        std::vector<Vec3> wild = s.band.start;
+        Positions wild = s.band.start;
         for (std::size_t n = 0; n < s.band.movable; ++n) {
             const auto i = static_cast<double>(n);
             wild[n] += Vec3{std::sin(i), std::cos(3 * i), std::sin(7 * i)} * s.band.h[n];
@@ -204,11 +204,11 @@ TEST_P(Fit, StartIsValidAndBlendStaysSo) {
 // They hold back those around them by so much that all lie well.
 TEST_P(Fit, BlendLeavesNodesThatStayAtTheStart) {
     forSettings(GetParam(), [](const Setting& s, unsigned seed) {
-        const std::vector<Vec3> goal = goalPositions(s.band, *s.painted.index, s.band.start, 4);
-        std::vector<Vec3> x;
+        const Positions goal = goalPositions(s.band, *s.painted.index, s.band.start, 4);
+        Positions x;
         std::vector<std::uint8_t> stays(s.band.walls, 0);
         for (std::size_t n = 0; n < s.band.walls; n += 50) stays[n] = 1;
-        const std::vector<double> alpha = blend(s.band, s.band.start, goal, x, stays);
+        const RawVector<double> alpha = blend(s.band, s.band.start, goal, x, stays);
         EXPECT_EQ(inverted(s.band, x), 0u) << "seed " << seed;
         for (std::size_t n = 0; n < s.band.walls; ++n) {
             if (!stays[n]) continue;
@@ -227,7 +227,7 @@ TEST_P(Fit, EnergyFallsAndNoCornerTurnsOver) {
         WallViews views(s.band, *s.painted.index);
         EnergyOptions shapeOnly;
         shapeOnly.wallWeights = {0};
-        std::vector<Vec3> x = s.band.start;
+        Positions x = s.band.start;
         double last = energyOver(s.band, x);
         for (int sweep = 0; sweep < 3; ++sweep) {
             minimiseEnergy(views, s.features, s.snaps, all, x, shapeOnly, context);
@@ -240,7 +240,7 @@ TEST_P(Fit, EnergyFallsAndNoCornerTurnsOver) {
         minimiseEnergy(views, s.features, s.snaps, all, x, whole, context);
         EXPECT_EQ(inverted(s.band, x), 0u) << "seed " << seed;
         // The exact snap: a node either keeps its corners above the floor, or makes its worst no worse.
-        const auto worst = [&](const std::vector<Vec3>& at) {
+        const auto worst = [&](const Positions& at) {
             double w = 1;
             s.band.corners.forAll([&](const Corner& c) { w = std::min(w, scaledJacobian(c, at)); });
             return w;
@@ -262,7 +262,7 @@ TEST(Energy, SingleNodesEndWhereTheGradientVanishes) {
     EnergyOptions options;
     options.wallWeights.assign(30, 0);
     const Context context;
-    const auto gradientAt = [&](std::size_t n, std::vector<Vec3> x) {
+    const auto gradientAt = [&](std::size_t n, Positions x) {
         Vec3 g;
         const double step = 1e-5 * s.band.h[n];
         const std::vector<Corner> corners = cornersAround(s.band, n);
@@ -284,7 +284,7 @@ TEST(Energy, SingleNodesEndWhereTheGradientVanishes) {
         ++tried;
         std::vector<std::uint8_t> one(s.band.movable, 0);
         one[n] = 1;
-        std::vector<Vec3> x = s.band.start;
+        Positions x = s.band.start;
         minimiseEnergy(views, s.features, s.snaps, one, x, options, context);
         EXPECT_LE(energyOver(corners, x), energyOver(corners, s.band.start));
         for (std::size_t m = 0; m < s.band.nodes(); ++m) ASSERT_TRUE(m == n || x[m] == s.band.start[m]);

@@ -42,7 +42,7 @@ TEST(EnergyExceeds, AgreesWithTheEnergy) {
 // Some corners around node 0, which is in each of their four places; of unlike sizes and weights, none inside out.
 struct Star {
     Band band;
-    std::vector<Vec3> x;
+    Positions x;
 
     explicit Star(unsigned seed, std::size_t corners) {
         std::mt19937 random(seed);

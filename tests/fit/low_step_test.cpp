@@ -14,7 +14,7 @@ double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
 }
 
 Vec3 faceNormal(const Front& front, FrontMesh::FaceHandle f) {
-    std::vector<Vec3> x;
+    Positions x;
     for (auto v : front.mesh.fv_range(f)) x.push_back(wallPoint(front, static_cast<std::size_t>(v.idx())));
     Vec3 area;
     for (std::size_t i = 1; i + 1 < x.size(); ++i) area += cross(x[i] - x[0], x[i + 1] - x[0]);

@@ -169,7 +169,7 @@ struct Placed {
     Band band;
     std::unique_ptr<FeatureIndex> features;
     std::vector<Snap> snaps;
-    std::vector<Vec3> x;
+    Positions x;
 };
 
 // Nodes in the mouth of a slot, between its lips, are over a gap; so are those over a groove's bottom.

@@ -20,7 +20,7 @@ struct Unsnapped : ToFront {
     }
     Band band;
     WallViews views;
-    std::vector<Vec3> x;
+    Positions x;
     std::vector<Snap> snaps;
 };
 

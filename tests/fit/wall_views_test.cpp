@@ -8,7 +8,7 @@
 namespace i2b::test {
 namespace {
 
-void expectAsAsked(WallViews& views, const std::vector<Vec3>& x) {
+void expectAsAsked(WallViews& views, const Positions& x) {
     const Band& band = views.band();
     parallelFor(band.walls, [&](std::size_t n) {
         const WallTarget target = wallTarget(views.index(), band, n, x[static_cast<std::size_t>(band.frontNode[n])], x[n]), kept = views.target(n, x);
@@ -25,7 +25,7 @@ void expectAsAsked(WallViews& views, const std::vector<Vec3>& x) {
 
 TEST(WallViews, AreWhatAskingAnewGives) {
     Unsnapped run(turnedBox());
-    const std::vector<Vec3> before = run.x;
+    const Positions before = run.x;
     expectAsAsked(run.views, run.x);
     expectAsAsked(run.views, run.x);
     std::mt19937 random(5);

@@ -1,6 +1,7 @@
 #include "i2b/fit/band.h"
 #include "i2b/core/flags.h"
 #include "i2b/core/give_up.h"
+#include "i2b/core/raw_fill.h"
 #include "i2b/core/rows.h"
 #include "i2b/fit/band_marks.h"
 #include "i2b/fit/band_pieces.h"
@@ -58,7 +59,7 @@ Csr<std::int32_t> rowsOfPrisms(const BandCorners& corners, std::size_t rows) {
 // The edges, once each, from both ends, by node and by other end; make(a, b) gives the edge.
 template <class Make>
 Csr<BandEdge> edgesOf(std::size_t rows, const std::vector<BandPieces>& pieces, const Make& make) {
-    std::vector<std::int64_t> next(rows + 1, 0);
+    RawVector<std::int64_t> next = filled<std::int64_t>(rows + 1, 0), first;
     const auto raise = [](std::int64_t& n) { return std::atomic_ref<std::int64_t>(n).fetch_add(1, std::memory_order_relaxed); };
     const auto forEdges = [&](const auto& f) {
         parallelFor(pieces.size(), [&](std::size_t p) {
@@ -67,10 +68,11 @@ Csr<BandEdge> edgesOf(std::size_t rows, const std::vector<BandPieces>& pieces, c
     };
     forEdges([&](std::uint32_t a, std::uint32_t) { raise(next[a]); });
     RawVector<std::int32_t> other(static_cast<std::size_t>(exclusiveScan(next)));
-    const std::vector<std::int64_t> first = next;
+    copyTo(first, next);
     forEdges([&](std::uint32_t a, std::uint32_t b) { other[static_cast<std::size_t>(raise(next[a]))] = static_cast<std::int32_t>(b); });
     Csr<BandEdge> edges;
-    edges.start.assign(rows + 1, 0);
+    edges.start.resize(rows + 1);
+    edges.start[rows] = 0;
     parallelFor(rows, [&](std::size_t r) {
         std::int32_t* const begin = other.data() + first[r];
         std::int32_t* const end = other.data() + next[r];
@@ -113,7 +115,7 @@ std::vector<std::array<float, 3>> inverseSizes(const LatticeMesh& mesh) {
 }
 
 // Numbers the band's core points: front, then movable, then fixed; within each in order of their numbers.
-std::vector<std::int32_t> numberNodes(Band& band, const LatticeMesh& mesh, const BandMarks& marks, int rings) {
+RawVector<std::int32_t> numberNodes(Band& band, const LatticeMesh& mesh, const BandMarks& marks, int rings) {
     const std::size_t points = marks.points.size();
     constexpr std::size_t chunk = 8192;
     const auto group = [&](std::size_t p) { return marks.points[p] == 1 ? 0 : marks.points[p] <= rings + 1 ? 1 : 2; };
@@ -128,9 +130,10 @@ std::vector<std::int32_t> numberNodes(Band& band, const LatticeMesh& mesh, const
     band.fronts = chunks ? static_cast<std::size_t>(next[chunks]) : 0;
     band.movable = band.walls + (chunks ? static_cast<std::size_t>(next[2 * chunks]) : 0);
     band.start.resize(nodes), band.h.resize(nodes), band.outside.resize(nodes), band.corePoint.resize(nodes - band.walls);
-    std::vector<std::int32_t> nodeOf(points, -1);
+    RawVector<std::int32_t> nodeOf(points);
     parallelChunks(points, chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
         for (std::size_t p = begin; p < end; ++p) {
+            nodeOf[p] = -1;
             if (!marks.points[p]) continue;
             const std::int32_t i = next[static_cast<std::size_t>(group(p)) * chunks + c]++;
             nodeOf[p] = static_cast<std::int32_t>(band.walls) + i;
@@ -201,9 +204,9 @@ Band buildBand(const LatticeMesh& mesh, const Front& front, int rings, const Wan
         band.start[v] = front.wall(v);
         band.reach[v] = std::max(s.x, std::max(s.y, s.z));
     });
-    band.h = front.h;
-    band.outside = front.outside;
-    const std::vector<std::int32_t> nodeOf = numberNodes(band, mesh, marks, rings);
+    band.h.assign(front.h.begin(), front.h.end());
+    band.outside.assign(front.outside.begin(), front.outside.end());
+    const RawVector<std::int32_t> nodeOf = numberNodes(band, mesh, marks, rings);
     band.frontNode.resize(band.walls);
     parallelFor(band.walls, [&](std::size_t v) { band.frontNode[v] = nodeOf[static_cast<std::size_t>(front.corePoint[v])]; });
     band.inside.resize(band.fronts);

@@ -17,19 +17,21 @@ struct BandEdge {
     float weight = 1;                     // in Laplacians: h / lattice length, less across the front
 };
 
+using Positions = RawVector<Vec3>;        // m, per node
+
 struct Band {
     std::size_t walls = 0;                // nodes [0, walls) are wall nodes, in fan order
     std::size_t fronts = 0;               // nodes [walls, walls + fronts) are front points
     std::size_t movable = 0;              // nodes [0, movable) move; the rest are fixed
-    std::vector<Vec3> start;              // m, per node: a valid state
-    std::vector<double> h;                // m, per node: edge of the finest cell around
-    std::vector<double> reach;            // m, per wall node: longest edge of the cells around, for what must be found
-    std::vector<std::uint8_t> outside;    // per node: sides of the domain box that it lies in
-    std::vector<std::int32_t> corePoint;  // per node from walls on: number in the LatticeMesh
-    std::vector<std::int32_t> frontNode;  // per wall node: its front node
-    std::vector<Vec3> inside;             // m, per front node (less walls): amid the kept cells around it; where that is behind
+    Positions start;                      // a valid state
+    RawVector<double> h;                  // m, per node: edge of the finest cell around
+    RawVector<double> reach;              // m, per wall node: longest edge of the cells around, for what must be found
+    RawVector<std::uint8_t> outside;      // per node: sides of the domain box that it lies in
+    RawVector<std::int32_t> corePoint;    // per node from walls on: number in the LatticeMesh
+    RawVector<std::int32_t> frontNode;    // per wall node: its front node
+    RawVector<Vec3> inside;               // m, per front node (less walls): amid the kept cells around it; where that is behind
                                           // geometry, too, as at convex edges, at `away` (startPositions())
-    std::vector<Vec3> away;               // m, per front node (less walls), up to startPositions(): the middle of the cells straight off its wall
+    RawVector<Vec3> away;                 // m, per front node (less walls), up to startPositions(): the middle of the cells straight off its wall
     std::vector<std::uint8_t> behind;     // per front node (less walls): starts behind geometry, seen from inside
     Csr<std::int32_t> fansOf;             // per front node (less walls): its wall nodes
     BandCorners corners;

@@ -42,7 +42,7 @@ constexpr std::array<std::array<std::uint8_t, 4>, 8> boxNear = [] {
 }();
 
 struct BandCorners {
-    std::vector<CornerCell> cells;        // of the core
+    RawVector<CornerCell> cells;          // of the core
     RawVector<Corner> list;               // those of cells that nodes hang on, then the prisms'
     std::size_t prisms = 0;               // where these begin
     std::vector<std::array<float, 3>> inverseSize; // 1/m, per level: of the lattice's cells along x, y, z

@@ -41,7 +41,7 @@ void addBox(int level, const Index3& c, const std::array<std::int32_t, 8>& nodes
 } // namespace
 
 void addCoreCell(const Band& band, LatticeMesh::Reader& reader, int level, const Index3& c,
-                 const std::vector<std::int32_t>& nodeOf, CoreCellRoom& room, BandPieces& out) {
+                 const RawVector<std::int32_t>& nodeOf, CoreCellRoom& room, BandPieces& out) {
     if (std::array<std::int32_t, 8> nodes; reader.corners(level, c, nodes)) {
         for (std::int32_t& n : nodes) n = nodeOf[static_cast<std::size_t>(n)];
         addBox(level, c, nodes, room, out);

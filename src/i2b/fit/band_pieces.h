@@ -44,7 +44,7 @@ struct CoreCellRoom {
 };
 
 // band: nodes numbered and placed. nodeOf: per point of the lattice mesh its node.
-void addCoreCell(const Band& band, LatticeMesh::Reader& reader, int level, const Index3& c, const std::vector<std::int32_t>& nodeOf, CoreCellRoom& room,
+void addCoreCell(const Band& band, LatticeMesh::Reader& reader, int level, const Index3& c, const RawVector<std::int32_t>& nodeOf, CoreCellRoom& room,
                  BandPieces& out);
 
 // Where the prisms' go; null: not asked for.

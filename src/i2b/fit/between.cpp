@@ -105,7 +105,7 @@ Foot footAt(const SurfaceIndex& index, const Vec3& q, const Vec3& fluid, double 
     return foot;
 }
 
-Foot footOf(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, std::size_t b) {
+Foot footOf(const Band& band, const SurfaceIndex& index, const Positions& x, std::size_t b) {
     const Vec3 f = seenFront(index, band, b, x[static_cast<std::size_t>(band.frontNode[b])]);
     const Vec3 way = f - x[b];
     const double length = norm(way);

@@ -15,7 +15,7 @@ struct Foot {
 // The nearest place on the geometry within radius (m) of q, seen from a place in the fluid.
 Foot footAt(const SurfaceIndex& index, const Vec3& q, const Vec3& fluid, double radius);
 // Of wall node b.
-Foot footOf(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, std::size_t b);
+Foot footOf(const Band& band, const SurfaceIndex& index, const Positions& x, std::size_t b);
 
 // Their normals differ by more than 25 degrees.
 bool turns(const Foot& a, const Foot& b);

@@ -1,4 +1,5 @@
 #include "i2b/core/flags.h"
+#include "i2b/core/raw_fill.h"
 #include "i2b/fit/corner.h"
 #include "i2b/fit/fit.h"
 #include <algorithm>
@@ -15,7 +16,7 @@ constexpr int gentleRounds = 30;    // after these only inverted corners count, 
 // How far each movable node has come, and what follows from changes that nobody has looked at yet.
 struct Progress {
     const Band& band;
-    std::vector<double> alpha;
+    RawVector<double> alpha;
     std::vector<std::uint8_t> untold;  // lowered, and its neighbours have not been bounded by it
     std::vector<std::uint8_t> unplaced; // lowered since the nodes were placed
     std::vector<std::uint8_t> moved;   // when they were placed last
@@ -23,7 +24,7 @@ struct Progress {
     std::vector<std::uint8_t> uneven;  // per fan: a node of it was lowered since they agreed
 
     explicit Progress(const Band& b)
-        : band(b), alpha(b.movable, 1), untold(b.movable, 0), unplaced(b.movable, 1), moved(b.movable, 0), marked(b.movable, 0), uneven(b.fronts, 0) {}
+        : band(b), alpha(filled(b.movable, 1.0)), untold(b.movable, 0), unplaced(b.movable, 1), moved(b.movable, 0), marked(b.movable, 0), uneven(b.fronts, 0) {}
     void mark(std::int32_t n) {
         if (static_cast<std::size_t>(n) < marked.size()) setFlag(marked[static_cast<std::size_t>(n)]);
     }
@@ -39,7 +40,7 @@ struct Progress {
 struct TraceAndDet {
     double trace, det;
 };
-TraceAndDet lookAt(const Corner& c, const std::vector<Vec3>& x) {
+TraceAndDet lookAt(const Corner& c, const Positions& x) {
     const Vec3& x0 = x[static_cast<std::size_t>(c.node[0])];
     const Vec3 e1 = x[static_cast<std::size_t>(c.node[1])] - x0, e2 = x[static_cast<std::size_t>(c.node[2])] - x0, e3 = x[static_cast<std::size_t>(c.node[3])] - x0;
     const double i1 = double(c.inverseLength[0]), i2 = double(c.inverseLength[1]), i3 = double(c.inverseLength[2]);
@@ -48,7 +49,7 @@ TraceAndDet lookAt(const Corner& c, const std::vector<Vec3>& x) {
 
 // Marks the nodes of bad corners. Only corners with a node that has moved since the last round are judged again: where
 // many have, all corners in turn, else those of the nodes that have, each at the first such node.
-void markBadCorners(const Band& band, const std::vector<Vec3>& x, double limit, Progress& progress) {
+void markBadCorners(const Band& band, const Positions& x, double limit, Progress& progress) {
     const auto isMoved = [&](std::int32_t m) { return static_cast<std::size_t>(m) < band.movable && progress.moved[static_cast<std::size_t>(m)]; };
     const auto judge = [&](const Corner& corner) {
         if (const TraceAndDet c = lookAt(corner, x); !energyExceeds(c.trace, c.det, limit)) return;
@@ -75,7 +76,7 @@ void markBadCorners(const Band& band, const std::vector<Vec3>& x, double limit, 
 }
 
 // Nodes of bad corners step back by `step`. Gives whether any changed.
-bool stepBackBad(const Band& band, const std::vector<Vec3>& x, double limit, double step, Progress& progress) {
+bool stepBackBad(const Band& band, const Positions& x, double limit, double step, Progress& progress) {
     markBadCorners(band, x, limit, progress);
     std::uint8_t changed = 0;
     forFlagged(progress.marked, [&](std::size_t n) {
@@ -119,7 +120,7 @@ void spread(const Band& band, Progress& progress) {
     }
 }
 
-void place(const std::vector<Vec3>& start, const std::vector<Vec3>& goal, Progress& progress, std::vector<Vec3>& x) {
+void place(const Positions& start, const Positions& goal, Progress& progress, Positions& x) {
     std::fill(progress.moved.begin(), progress.moved.end(), std::uint8_t(0));
     forFlagged(progress.unplaced, [&](std::size_t n) {
         const Vec3 to = start[n] + (goal[n] - start[n]) * progress.alpha[n];
@@ -131,25 +132,25 @@ void place(const std::vector<Vec3>& start, const std::vector<Vec3>& goal, Progre
 
 } // namespace
 
-double cornerEnergy(const Corner& c, const std::vector<Vec3>& x) {
+double cornerEnergy(const Corner& c, const Positions& x) {
     const TraceAndDet look = lookAt(c, x);
     return energyOf(look.trace, look.det);
 }
 
-double scaledJacobian(const Corner& c, const std::vector<Vec3>& x) {
+double scaledJacobian(const Corner& c, const Positions& x) {
     const Vec3& x0 = x[static_cast<std::size_t>(c.node[0])];
     const Vec3 e1 = x[static_cast<std::size_t>(c.node[1])] - x0, e2 = x[static_cast<std::size_t>(c.node[2])] - x0, e3 = x[static_cast<std::size_t>(c.node[3])] - x0;
     const double l = norm(e1) * norm(e2) * norm(e3);
     return l > 0 ? dot(cross(e1, e2), e3) / l : -1;
 }
 
-double worstCorner(const Band& band, std::size_t node, const std::vector<Vec3>& x) {
+double worstCorner(const Band& band, std::size_t node, const Positions& x) {
     double worst = 1;
     band.corners.around(node, [&](const Corner& c) { worst = std::min(worst, scaledJacobian(c, x)); });
     return worst;
 }
 
-std::vector<std::uint8_t> nodesOfPoorCorners(const Band& band, const std::vector<Vec3>& x, double limit) {
+std::vector<std::uint8_t> nodesOfPoorCorners(const Band& band, const Positions& x, double limit) {
     std::vector<std::uint8_t> poor(band.nodes(), 0);
     parallelFor(band.corners.items(), [&](std::size_t i) {
         band.corners.ofItem(i, [&](const Corner& c) {
@@ -161,12 +162,12 @@ std::vector<std::uint8_t> nodesOfPoorCorners(const Band& band, const std::vector
     return poor;
 }
 
-std::vector<double> blend(const Band& band, const std::vector<Vec3>& start, const std::vector<Vec3>& goal, std::vector<Vec3>& x,
+RawVector<double> blend(const Band& band, const Positions& start, const Positions& goal, Positions& x,
                           const std::vector<std::uint8_t>& stays) {
     Progress progress(band);
     forFlagged(stays, [&](std::size_t n) { progress.lower(n, 0); });
     spread(band, progress);
-    x = start;
+    copyTo(x, start);
     place(start, goal, progress, x);
     for (int round = 0;; ++round) {
         const bool gentle = round < gentleRounds;

@@ -57,7 +57,7 @@ NodeBlocks::NodeBlocks(const Band& band) {
 void NodeBlocks::gather(const Band& band) {
     Box bounds;
     for (std::size_t n = band.walls; n < band.movable; ++n) bounds.add(band.start[n]);
-    std::vector<Keyed> sorted(band.movable);
+    RawVector<Keyed> sorted(band.movable);
     parallelFor(band.movable, [&](std::size_t n) {
         const std::size_t at = n < band.walls ? static_cast<std::size_t>(band.frontNode[n]) : n;
         sorted[n] = {keyOf(band.start[at], band.h[at], bounds.lo), static_cast<std::int32_t>(n)};
@@ -66,7 +66,8 @@ void NodeBlocks::gather(const Band& band) {
     blockOf_.resize(band.movable);
     nodes_.resize(band.movable);
     const auto isFirst = [&](std::size_t i) { return i == 0 || sorted[i].key != sorted[i - 1].key; };
-    std::vector<std::uint32_t> begun(sorted.size() + 1, 0); // blocks before each place
+    RawVector<std::uint32_t> begun(sorted.size() + 1); // blocks before each place
+    begun.back() = 0;
     parallelFor(sorted.size(), [&](std::size_t i) { begun[i] = isFirst(i); });
     kindFrom_.resize(exclusiveScan(begun));
     parallelFor(sorted.size(), [&](std::size_t i) {

@@ -2,6 +2,7 @@
 // after the other, in order, while their corners are in the cache; blocks of one colour share no corner and go at once.
 // Blocks and colours follow from the band alone, so a sweep ends the same on any number of threads.
 #pragma once
+#include "i2b/core/raw_vector.h"
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -38,9 +39,9 @@ class NodeBlocks {
     void colour(const std::vector<std::vector<std::uint32_t>>& beside);
     std::span<std::int32_t> all(std::size_t block) { return {nodes_.data() + kindFrom_[block].front(), nodes_.data() + kindFrom_[block].back()}; }
 
-    std::vector<std::int32_t> nodes_;                     // block by block, kind by kind
+    RawVector<std::int32_t> nodes_;                       // block by block, kind by kind
     std::vector<std::array<std::size_t, 4>> kindFrom_;    // per block: where each kind begins, and where the block ends
-    std::vector<std::uint32_t> blockOf_;                  // per node, while these are found
+    RawVector<std::uint32_t> blockOf_;                    // per node, while these are found
     std::vector<std::vector<std::uint32_t>> colours_;
     struct Beside { std::vector<std::uint32_t> earlier, later; }; // blocks of lower and of higher colours that share corners
     std::vector<Beside> beside_;                          // per block

@@ -22,7 +22,7 @@ constexpr double steep = 0.7;        // cosine: edges along a line lead across n
 constexpr int looks = 8;             // equal parts of an edge, between which a bend is looked for
 
 // Of a crossing whose place on the wall is known: its place on the front.
-void placeOnFront(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, EdgeCrossing& c) {
+void placeOnFront(const Band& band, const SurfaceIndex& index, const Positions& x, EdgeCrossing& c) {
     const auto frontOf = [&](std::int32_t n) { return x[std::size_t(band.frontNode[std::size_t(n)])]; };
     c.front = Front::Inserted{{c.p, c.q}, c.t}.frontAt(frontOf(c.p), frontOf(c.q), c.wall);
     c.alive = !index.firstHit(c.front, c.wall, 0.97);
@@ -33,7 +33,7 @@ struct Finder {
     const Band& band;
     const SurfaceIndex& index;
     const FeatureIndex& features;
-    const std::vector<Vec3>& x;
+    const Positions& x;
     const WallMarks& marks;
 
     const Vec3& frontOf(std::size_t n) const { return x[std::size_t(band.frontNode[n])]; }
@@ -204,7 +204,7 @@ EdgeCrossing Finder::on(std::int32_t edge) const {
 
 } // namespace
 
-WallMarks markWall(WallViews& views, const FeatureIndex& features, const std::vector<Vec3>& x,
+WallMarks markWall(WallViews& views, const FeatureIndex& features, const Positions& x,
                    const std::vector<Snap>& snaps) {
     const Band& band = views.band();
     const SurfaceIndex& index = views.index();
@@ -234,7 +234,7 @@ WallMarks markWall(WallViews& views, const FeatureIndex& features, const std::ve
 }
 
 std::vector<EdgeCrossing> findCrossings(const Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features,
-                                        const std::vector<Vec3>& x, const WallMarks& marks) {
+                                        const Positions& x, const WallMarks& marks) {
     const Finder finder{front, band, index, features, x, marks};
     const RawVector<EdgeCrossing> found = collect<EdgeCrossing>(front.mesh.n_edges(), [&](std::size_t e, const auto& put) {
         if (const EdgeCrossing crossing = finder.on(static_cast<std::int32_t>(e)); crossing.alive) put(crossing);
@@ -242,11 +242,11 @@ std::vector<EdgeCrossing> findCrossings(const Front& front, const Band& band, co
     return {found.begin(), found.end()};
 }
 
-void followFront(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, std::vector<EdgeCrossing>& crossings) {
+void followFront(const Band& band, const SurfaceIndex& index, const Positions& x, std::vector<EdgeCrossing>& crossings) {
     parallelFor(crossings.size(), [&](std::size_t i) { placeOnFront(band, index, x, crossings[i]); }, 64);
 }
 
-bool stepAside(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, EdgeCrossing& c) {
+bool stepAside(const Band& band, const SurfaceIndex& index, const Positions& x, EdgeCrossing& c) {
     const Vec3 &p = x[std::size_t(band.frontNode[std::size_t(c.p)])], &q = x[std::size_t(band.frontNode[std::size_t(c.q)])];
     const double length2 = norm2(q - p);
     if (length2 == 0) return false;

@@ -13,7 +13,7 @@ struct WallMarks {
     std::vector<Vec3> tangents;         // unit, of the line that it is held to; zero: none, or a corner
 };
 
-WallMarks markWall(WallViews& views, const FeatureIndex& features, const std::vector<Vec3>& x,
+WallMarks markWall(WallViews& views, const FeatureIndex& features, const Positions& x,
                    const std::vector<Snap>& snaps);
 
 struct EdgeCrossing {
@@ -30,12 +30,12 @@ struct EdgeCrossing {
 
 // Those of the front's edges, in order. x: positions of the band's nodes.
 std::vector<EdgeCrossing> findCrossings(const Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features,
-                                        const std::vector<Vec3>& x, const WallMarks& marks);
+                                        const Positions& x, const WallMarks& marks);
 
 // After nodes of the front have moved. Those that geometry now parts from their place on the line are no longer alive.
-void followFront(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, std::vector<EdgeCrossing>& crossings);
+void followFront(const Band& band, const SurfaceIndex& index, const Positions& x, std::vector<EdgeCrossing>& crossings);
 
 // Puts a crossing's place on the front where its edge comes nearest to the place on the wall. Gives whether it moved.
-bool stepAside(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, EdgeCrossing& crossing);
+bool stepAside(const Band& band, const SurfaceIndex& index, const Positions& x, EdgeCrossing& crossing);
 
 } // namespace i2b

@@ -27,7 +27,7 @@ struct WallTerm {
 };
 
 // Draws a front node that stands behind geometry back to the flow's side.
-WallTerm wayOut(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, std::size_t n, double weight) {
+WallTerm wayOut(const Band& band, const SurfaceIndex& index, const Positions& x, std::size_t n, double weight) {
     WallTerm term;
     const std::size_t i = n - band.walls;
     const SegmentHit hit = index.firstHit(band.inside[i], x[n]);
@@ -40,7 +40,7 @@ WallTerm wayOut(const Band& band, const SurfaceIndex& index, const std::vector<V
 }
 
 // The plane of a wall node's target, or the line or point that it is snapped to.
-WallTerm wallTerm(WallViews& views, const FeatureIndex& features, const Snap& snap, const std::vector<Vec3>& x,
+WallTerm wallTerm(WallViews& views, const FeatureIndex& features, const Snap& snap, const Positions& x,
                   std::size_t n, double weight) {
     const double h = views.band().h[n];
     WallTerm term;
@@ -133,7 +133,7 @@ bool crosses(const SurfaceIndex& index, const Vec3& f, const Vec3& b, double h) 
     return hit && (1 - hit.t) * length > off;
 }
 
-bool pathsStayFree(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& x, std::size_t n, const Vec3& to) {
+bool pathsStayFree(const Band& band, const SurfaceIndex& index, const Positions& x, std::size_t n, const Vec3& to) {
     if (n < band.walls) {
         const Vec3& f = x[static_cast<std::size_t>(band.frontNode[n])];
         return !crosses(index, f, to, band.h[n]) || crosses(index, f, x[n], band.h[n]);
@@ -154,7 +154,7 @@ bool pathsStayFree(const Band& band, const SurfaceIndex& index, const std::vecto
 } // namespace
 
 bool minimiseEnergy(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps,
-                    const std::vector<std::uint8_t>& active, std::vector<Vec3>& x, const EnergyOptions& options, const Context& context) {
+                    const std::vector<std::uint8_t>& active, Positions& x, const EnergyOptions& options, const Context& context) {
     const Band& band = views.band();
     const SurfaceIndex& index = views.index();
     std::vector<Floor> floors(band.walls);

@@ -23,7 +23,7 @@ struct FaceCuts { // of one face
 class FaceCutter {
   public:
     // x: positions of the band's nodes; crossingOf: per edge of the front, its place in crossings, or -1.
-    FaceCutter(const Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x,
+    FaceCutter(const Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const Positions& x,
                const WallMarks& marks, const std::vector<EdgeCrossing>& crossings, const std::vector<std::int32_t>& crossingOf)
         : front_(front), band_(band), index_(index), features_(features), x_(x), marks_(marks), crossings_(crossings), crossingOf_(crossingOf) {}
 
@@ -57,7 +57,7 @@ class FaceCutter {
     const Band& band_;
     const SurfaceIndex& index_;
     const FeatureIndex& features_;
-    const std::vector<Vec3>& x_;
+    const Positions& x_;
     const WallMarks& marks_;
     const std::vector<EdgeCrossing>& crossings_;
     const std::vector<std::int32_t>& crossingOf_;

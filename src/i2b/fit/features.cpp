@@ -37,7 +37,7 @@ struct Crossing {
 };
 
 // A node on its way to a line; none where that is farther than `within` (in h) or the node may not be snapped.
-Crossing crossingAt(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x, const Between& between, std::int32_t node,
+Crossing crossingAt(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const Positions& x, const Between& between, std::int32_t node,
                     double within = reach) {
     const auto i = static_cast<std::size_t>(node);
     if (!between.line.found || band.outside[i] != 0) return {};
@@ -54,7 +54,7 @@ Crossing crossingAt(const Band& band, const SurfaceIndex& index, const FeatureIn
 }
 
 // The better end of a wall edge that crosses a line.
-Crossing crossingOf(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x, const Between& between, std::int32_t p,
+Crossing crossingOf(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const Positions& x, const Between& between, std::int32_t p,
                     std::int32_t q, double within = reach) {
     Crossing first = crossingAt(band, index, features, x, between, p, within), second = crossingAt(band, index, features, x, between, q, within);
     first.other = q, second.other = p;
@@ -64,7 +64,7 @@ Crossing crossingOf(const Band& band, const SurfaceIndex& index, const FeatureIn
 
 // A wall edge from one side of a step to the other: both ends stand on surfaces that do not turn, its middle off all
 // geometry. Each end has a line between itself and the riser that the edge sees on its way, which need not be in the middle.
-std::array<Crossing, 2> stepOf(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x,
+std::array<Crossing, 2> stepOf(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const Positions& x,
                                const std::vector<Foot>& feet, std::int32_t p, std::int32_t q) {
     std::array<Crossing, 2> found;
     const auto a = static_cast<std::size_t>(p), b = static_cast<std::size_t>(q);
@@ -85,7 +85,7 @@ std::array<Crossing, 2> stepOf(const Band& band, const SurfaceIndex& index, cons
 
 // A wall edge from a node on its line to a free one that bridges a corner between the two, as at the foot of a step lower
 // than a cell: the free end has a line of its own between itself and the riser that the edge sees on its way.
-Crossing besideLine(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x, const Foot& foot,
+Crossing besideLine(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const Positions& x, const Foot& foot,
                     const Snap& held, std::int32_t holder, std::int32_t free) {
     const auto a = static_cast<std::size_t>(holder), b = static_cast<std::size_t>(free);
     if (held.kind == SnapKind::corner || !foot.found) return {};
@@ -112,7 +112,7 @@ struct EdgeLook {
     const Band& band;
     const SurfaceIndex& index;
     const FeatureIndex& features;
-    const std::vector<Vec3>& x;
+    const Positions& x;
     const std::vector<Foot>& feet;
     const std::vector<Snap>& snaps;
 
@@ -155,7 +155,7 @@ struct EdgeLook {
     }
 };
 
-std::size_t snapCorners(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Foot>& feet, const std::vector<Vec3>& x,
+std::size_t snapCorners(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Foot>& feet, const Positions& x,
                         std::vector<Snap>& snaps) {
     struct Candidate {
         double distance;
@@ -267,7 +267,7 @@ FeatureIndex::Line lineUpon(const FeatureIndex& features, const Vec3& x, double 
 }
 
 std::size_t snapToFeatures(WallViews& views, const Front& front, const FeatureIndex& features,
-                           const std::vector<Vec3>& x, std::vector<Snap>& snaps) {
+                           const Positions& x, std::vector<Snap>& snaps) {
     const Band& band = views.band();
     const SurfaceIndex& index = views.index();
     std::vector<Foot> feet(band.walls);
@@ -297,7 +297,7 @@ std::size_t snapToFeatures(WallViews& views, const Front& front, const FeatureIn
 }
 
 std::size_t splitAlongFeatures(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features,
-                               const std::vector<Vec3>& x, const std::vector<Snap>& snaps) {
+                               const Positions& x, const std::vector<Snap>& snaps) {
     const std::size_t faces = front.ownerCell.size();
     std::vector<std::int8_t> diagonal(faces, -1); // 0: vertices 0 and 2, 1: vertices 1 and 3
     const auto verticesOf = [&](std::size_t f, std::array<std::int32_t, 8>& v) {

@@ -58,11 +58,11 @@ FeatureIndex::Line lineUpon(const FeatureIndex& features, const Vec3& x, double 
 // Snaps further nodes, nearest crossings first, one end of an edge at most; those already in snaps stay.
 // Gives how many were added.
 std::size_t snapToFeatures(WallViews& views, const Front& front, const FeatureIndex& features,
-                           const std::vector<Vec3>& x, std::vector<Snap>& snaps);
+                           const Positions& x, std::vector<Snap>& snaps);
 
 // Splits quads of the front whose diagonal is snapped and whose other two nodes lie on different sides. Front
 // numbering stays but for faces, which are renumbered in order of their owner cells. Gives how many were split.
 std::size_t splitAlongFeatures(Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features,
-                               const std::vector<Vec3>& x, const std::vector<Snap>& snaps);
+                               const Positions& x, const std::vector<Snap>& snaps);
 
 } // namespace i2b

@@ -35,14 +35,14 @@ void grow(const Band& band, std::vector<std::uint8_t>& marked, int rings) {
 }
 
 // How far a wall node is from where it should be: on the line or corner that it is snapped to, else on the surface.
-double wayToGo(WallViews& views, const FeatureIndex& features, const Snap& snap, const std::vector<Vec3>& x, std::size_t n) {
+double wayToGo(WallViews& views, const FeatureIndex& features, const Snap& snap, const Positions& x, std::size_t n) {
     if (snap.kind != SnapKind::none) return norm(snapLine(views.index(), features, snap, x[n], views.band().h[n]).point - x[n]);
     const WallTarget& t = views.target(n, x);
     return t.found ? norm(t.point - x[n]) : 0;
 }
 
 // Nodes off their target, snapped or in a poor corner, and those around them.
-std::vector<std::uint8_t> activeNodes(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps, const std::vector<Vec3>& x) {
+std::vector<std::uint8_t> activeNodes(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps, const Positions& x) {
     const Band& band = views.band();
     std::vector<std::uint8_t> active = nodesOfPoorCorners(band, x, poorEnergy);
     parallelFor(band.walls, [&](std::size_t n) {
@@ -53,7 +53,7 @@ std::vector<std::uint8_t> activeNodes(WallViews& views, const FeatureIndex& feat
 }
 
 // Wall nodes at a sharp edge or a rim: the closest point says little of where they belong.
-std::vector<std::uint8_t> nodesAtLines(const Band& band, const FeatureIndex& features, const std::vector<Vec3>& x) {
+std::vector<std::uint8_t> nodesAtLines(const Band& band, const FeatureIndex& features, const Positions& x) {
     std::vector<std::uint8_t> atLine(band.walls);
     parallelFor(band.walls, [&](std::size_t n) {
         const FeatureIndex::Line line = features.closestLine(x[n], nearRim * band.h[n]);
@@ -63,7 +63,7 @@ std::vector<std::uint8_t> nodesAtLines(const Band& band, const FeatureIndex& fea
 }
 
 // Those of some wall nodes that are not where they should be, and may go on.
-std::vector<std::uint32_t> unfinishedOf(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps, const std::vector<Vec3>& x,
+std::vector<std::uint32_t> unfinishedOf(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps, const Positions& x,
                                         const std::vector<std::uint32_t>& nodes) {
     const Band& band = views.band();
     std::vector<std::uint8_t> isOff(nodes.size(), 0);
@@ -78,7 +78,7 @@ std::vector<std::uint32_t> unfinishedOf(WallViews& views, const FeatureIndex& fe
 
 // At lines and in narrow places nodes come a little way in a sweep: these, a few in a hundred, go on with those around them, with
 // the weights of the last one. Gives whether all sweeps were within the budget.
-bool finish(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps, std::vector<Vec3>& x, const EnergyOptions& energy,
+bool finish(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps, Positions& x, const EnergyOptions& energy,
             const Context& context) {
     const Band& band = views.band();
     std::vector<std::uint32_t> off(band.walls);
@@ -94,7 +94,7 @@ bool finish(WallViews& views, const FeatureIndex& features, const std::vector<Sn
     return true;
 }
 
-void store(const Band& band, const std::vector<Vec3>& x, Front& front) {
+void store(const Band& band, const Positions& x, Front& front) {
     parallelFor(band.walls, [&](std::size_t v) {
         front.mesh.set_point(FrontMesh::VertexHandle(static_cast<int>(v)), {x[v].x, x[v].y, x[v].z});
         front.front[v] = x[static_cast<std::size_t>(band.frontNode[v])];
@@ -129,7 +129,7 @@ std::vector<Front::Hanging> hangingPoints(const Band& band) {
 
 // Lets go of nodes that could not come near the feature that they are held to: on the surface beside it they serve
 // better.
-void releaseUnreached(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x, std::vector<Snap>& snaps) {
+void releaseUnreached(const Band& band, const SurfaceIndex& index, const FeatureIndex& features, const Positions& x, std::vector<Snap>& snaps) {
     parallelFor(band.walls, [&](std::size_t n) {
         if (snaps[n].kind == SnapKind::none || norm(snapLine(index, features, snaps[n], x[n], band.h[n]).point - x[n]) <= unreached * band.h[n]) return;
         snaps[n] = {};
@@ -147,7 +147,7 @@ bool hasLineBeside(const Front& front, const std::vector<Snap>& snaps, std::size
 }
 
 // Nodes that should be on a feature besides, and vertices where edges still cross one.
-void seekOnce(Front& front, WallViews& views, const FeatureIndex& features, std::vector<Vec3>& x, std::vector<Snap>& snaps, FitSummary& summary) {
+void seekOnce(Front& front, WallViews& views, const FeatureIndex& features, Positions& x, std::vector<Snap>& snaps, FitSummary& summary) {
     const Band& band = views.band();
     summary.wishes = snaps;
     snapToFeatures(views, front, features, x, summary.wishes);
@@ -167,12 +167,12 @@ void seekOnce(Front& front, WallViews& views, const FeatureIndex& features, std:
 }
 
 // The nodes on their way to the closest points of the wall, as far as the corners stay good.
-std::vector<Vec3> projected(Band& band, const SurfaceIndex& index, const FeatureIndex& features, int sweeps, const Context& context, FitSummary& summary) {
-    const std::vector<Vec3> start = startPositions(band, index);
-    const std::vector<Vec3> goal = goalPositions(band, index, start, sweeps);
+Positions projected(Band& band, const SurfaceIndex& index, const FeatureIndex& features, int sweeps, const Context& context, FitSummary& summary) {
+    const Positions start = startPositions(band, index);
+    const Positions goal = goalPositions(band, index, start, sweeps);
     context.checkCancelled();
-    std::vector<Vec3> x;
-    const std::vector<double> alpha = blend(band, start, goal, x, nodesAtLines(band, features, goal));
+    Positions x;
+    const RawVector<double> alpha = blend(band, start, goal, x, nodesAtLines(band, features, goal));
     for (std::size_t v = 0; v < band.walls; ++v) summary.blended += alpha[v] == 1;
     return x;
 }
@@ -189,7 +189,7 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     front.hanging = hangingPoints(band);
     context.checkCancelled();
     const FeatureIndex features(graph);
-    std::vector<Vec3> x = projected(band, index, features, options.sweeps, context, summary);
+    Positions x = projected(band, index, features, options.sweeps, context, summary);
 
     WallViews views(band, index);
     std::vector<Snap> snaps(band.walls);

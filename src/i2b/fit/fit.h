@@ -55,26 +55,26 @@ WallTarget wallTarget(const SurfaceIndex& index, const Band& band, std::size_t w
 
 // Front nodes in narrow passages start behind a wall. Marks them in the band and gives valid positions with all of
 // them on the flow's side, as far as the corners allow; the band's own where none is behind.
-std::vector<Vec3> startPositions(Band& band, const SurfaceIndex& index);
+Positions startPositions(Band& band, const SurfaceIndex& index);
 
 // Where the front node of a wall node stands, or the last place on the flow's side on the way to it.
 Vec3 seenFront(const SurfaceIndex& index, const Band& band, std::size_t wallNode, const Vec3& f);
 
 // Direct positions: smoothed front, projected wall, relaxed core (Jacobi; positions per node).
-std::vector<Vec3> goalPositions(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& start, int sweeps);
+Positions goalPositions(const Band& band, const SurfaceIndex& index, const Positions& start, int sweeps);
 
 // x = start + alpha (goal - start) with the largest alpha per node, bounded in slope, that leaves every corner good.
 // Gives alpha per movable node; x is filled. stays: per wall node (or empty), not 0: alpha is 0.
-std::vector<double> blend(const Band& band, const std::vector<Vec3>& start, const std::vector<Vec3>& goal, std::vector<Vec3>& x,
+RawVector<double> blend(const Band& band, const Positions& start, const Positions& goal, Positions& x,
                           const std::vector<std::uint8_t>& stays = {});
 
 // Corner quality: phi = 0.75 |J|^2 / (3 D^(2/3)) + 0.125 (D + 1/D), infinite where D <= 0; 1 for the ideal corner.
-double cornerEnergy(const Corner& corner, const std::vector<Vec3>& x);
-double scaledJacobian(const Corner& corner, const std::vector<Vec3>& x);
+double cornerEnergy(const Corner& corner, const Positions& x);
+double scaledJacobian(const Corner& corner, const Positions& x);
 // The least of a node's corners, at most 1.
-double worstCorner(const Band& band, std::size_t node, const std::vector<Vec3>& x);
+double worstCorner(const Band& band, std::size_t node, const Positions& x);
 // Marks, per movable node, those of corners with a phi above the limit.
-std::vector<std::uint8_t> nodesOfPoorCorners(const Band& band, const std::vector<Vec3>& x, double limit);
+std::vector<std::uint8_t> nodesOfPoorCorners(const Band& band, const Positions& x, double limit);
 
 struct EnergyOptions {
     std::vector<double> wallWeights{0.1, 10, 100, 1e3, 1e5, 1e6};
@@ -86,10 +86,10 @@ struct EnergyOptions {
 };
 // Gauss-Seidel over a colouring of the active nodes. active: per movable node. Gives whether all sweeps were within the budget.
 bool minimiseEnergy(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps,
-                    const std::vector<std::uint8_t>& active, std::vector<Vec3>& x, const EnergyOptions& options, const Context& context);
+                    const std::vector<std::uint8_t>& active, Positions& x, const EnergyOptions& options, const Context& context);
 
 // Moves wall nodes the whole, half or a quarter of the way to their targets where the corners stay good.
 void snapExactly(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps,
-                 std::vector<Vec3>& x, const EnergyOptions& options);
+                 Positions& x, const EnergyOptions& options);
 
 } // namespace i2b

@@ -23,7 +23,7 @@ struct Fold {
 
 class FoldFinder {
   public:
-    FoldFinder(const Band& band, const Front& front, const SurfaceIndex& index, const FeatureIndex& features, const std::vector<Vec3>& x,
+    FoldFinder(const Band& band, const Front& front, const SurfaceIndex& index, const FeatureIndex& features, const Positions& x,
                const std::vector<Snap>& snaps)
         : band_(band), front_(front), index_(index), features_(features), x_(x), snaps_(snaps) {}
     Fold foldAt(std::size_t n) const;
@@ -40,7 +40,7 @@ class FoldFinder {
     const Front& front_;
     const SurfaceIndex& index_;
     const FeatureIndex& features_;
-    const std::vector<Vec3>& x_;
+    const Positions& x_;
     const std::vector<Snap>& snaps_;
 };
 
@@ -139,7 +139,7 @@ bool FoldFinder::isTaken(const Fold& fold) const {
 } // namespace
 
 std::size_t snapFolds(const Band& band, const Front& front, const SurfaceIndex& index, const FeatureIndex& features,
-                      const std::vector<Vec3>& x, std::vector<Snap>& snaps) {
+                      const Positions& x, std::vector<Snap>& snaps) {
     const FoldFinder finder(band, front, index, features, x, snaps);
     std::size_t all = 0, added = 1;
     for (int round = 0; round < rounds && added > 0; ++round) {

@@ -8,6 +8,6 @@ namespace i2b {
 // Snaps such nodes, nearest first, where no node beside them is bound for the same place; those already in snaps stay.
 // Gives how many were added.
 std::size_t snapFolds(const Band& band, const Front& front, const SurfaceIndex& index, const FeatureIndex& features,
-                      const std::vector<Vec3>& x, std::vector<Snap>& snaps);
+                      const Positions& x, std::vector<Snap>& snaps);
 
 } // namespace i2b

@@ -9,7 +9,7 @@ namespace {
 constexpr double goodCorner = 0.2; // scaled Jacobian: corners that were as good stay so, worse ones do not get worse
 
 // Moves a node of the front, if that is well.
-bool stepOut(std::size_t node, const Vec3& step, const Band& band, const SurfaceIndex& index, std::vector<Vec3>& x, Front& front) {
+bool stepOut(std::size_t node, const Vec3& step, const Band& band, const SurfaceIndex& index, Positions& x, Front& front) {
     const Vec3 from = x[node];
     const double before = worstCorner(band, node, x);
     x[node] = from + withinSides(step, band.outside[node]);
@@ -23,7 +23,7 @@ bool stepOut(std::size_t node, const Vec3& step, const Band& band, const Surface
 
 } // namespace
 
-std::size_t makeRoom(const std::vector<RoomWish>& wishes, const Band& band, const SurfaceIndex& index, std::vector<Vec3>& x, Front& front) {
+std::size_t makeRoom(const std::vector<RoomWish>& wishes, const Band& band, const SurfaceIndex& index, Positions& x, Front& front) {
     std::size_t moved = 0;
     const auto frontOf = [&](std::int32_t wall) { return static_cast<std::size_t>(band.frontNode[static_cast<std::size_t>(wall)]); };
     for (const RoomWish& wish : wishes) { // serial: few, and some share a node

@@ -19,6 +19,6 @@ inline constexpr double longestStep = 0.35; // of h: of a front node
 
 // Moves the front nodes of the wishes, in their order, where every corner of the band around stays good and no geometry lies
 // between; x: positions of the band's nodes. The front is told. Gives how many moved.
-std::size_t makeRoom(const std::vector<RoomWish>& wishes, const Band& band, const SurfaceIndex& index, std::vector<Vec3>& x, Front& front);
+std::size_t makeRoom(const std::vector<RoomWish>& wishes, const Band& band, const SurfaceIndex& index, Positions& x, Front& front);
 
 } // namespace i2b

@@ -1,6 +1,6 @@
 #include "i2b/core/parallel.h"
 #include "i2b/core/give_up.h"
-#include "i2b/core/raw_vector.h"
+#include "i2b/core/raw_fill.h"
 #include "i2b/fit/corner.h"
 #include "i2b/fit/fit.h"
 #include <algorithm>
@@ -29,15 +29,6 @@ ClosestPoint closestWithinSides(const SurfaceIndex& index, const Vec3& q, std::u
     }
     c.point = p;
     return c;
-}
-
-using Positions = RawVector<Vec3>;
-
-// One copy after another in the same memory.
-const Positions& copyTo(Positions& copy, const std::vector<Vec3>& x) {
-    copy.resize(x.size());
-    parallelFor(x.size(), [&](std::size_t i) { copy[i] = x[i]; }, 8192);
-    return copy;
 }
 
 Vec3 weightedMean(std::span<const BandEdge> edges, const Positions& x) {
@@ -70,8 +61,9 @@ Vec3 stoppedByGeometry(const SurfaceIndex& index, const Vec3& from, const Vec3& 
 
 bool isFront(const Band& band, std::size_t n) { return n >= band.walls && n < band.walls + band.fronts; }
 
-void smoothSurface(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& start, std::vector<Vec3>& x, Positions& copy) {
-    const Positions& old = copyTo(copy, x);
+void smoothSurface(const Band& band, const SurfaceIndex& index, const Positions& start, Positions& x, Positions& copy) {
+    copyTo(copy, x);
+    const Positions& old = copy;
     parallelFor(band.fronts, [&](std::size_t i) {
         const std::size_t n = band.walls + i;
         Vec3 sum;
@@ -87,8 +79,9 @@ void smoothSurface(const Band& band, const SurfaceIndex& index, const std::vecto
     });
 }
 
-void projectWalls(const Band& band, const SurfaceIndex& index, std::vector<Vec3>& x, Positions& copy, bool first) {
-    const Positions& old = copyTo(copy, x);
+void projectWalls(const Band& band, const SurfaceIndex& index, Positions& x, Positions& copy, bool first) {
+    copyTo(copy, x);
+    const Positions& old = copy;
     parallelFor(band.walls, [&](std::size_t b) {
         const Vec3& f = old[static_cast<std::size_t>(band.frontNode[b])];
         Vec3 q = f;
@@ -114,8 +107,9 @@ void projectWalls(const Band& band, const SurfaceIndex& index, std::vector<Vec3>
     });
 }
 
-void relaxVolume(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& start, std::vector<Vec3>& x, Positions& copy) {
-    const Positions& old = copyTo(copy, x);
+void relaxVolume(const Band& band, const SurfaceIndex& index, const Positions& start, Positions& x, Positions& copy) {
+    copyTo(copy, x);
+    const Positions& old = copy;
     parallelFor(band.movable - band.walls, [&](std::size_t i) {
         const std::size_t n = band.walls + i;
         const Vec3 to = isFront(band, n) ? weightedMean(band.edges[n], old) : band.start[n] + meanMove(band, band.edges[n], old);
@@ -123,7 +117,8 @@ void relaxVolume(const Band& band, const SurfaceIndex& index, const std::vector<
         x[n] = isFront(band, n) ? stoppedByGeometry(index, start[n], moved) : moved;
     });
     // Nodes that hang on a coarse edge or face stay on it; parents never hang themselves on the same level.
-    const Positions& relaxed = copyTo(copy, x);
+    copyTo(copy, x);
+    const Positions& relaxed = copy;
     parallelFor(band.movable - band.walls, [&](std::size_t i) {
         const std::size_t n = band.walls + i;
         const std::span<const std::int32_t> parents = band.parents[n];
@@ -165,8 +160,9 @@ WallTarget targetSeen(const SurfaceIndex& index, const Vec3& f, const Vec3& b, d
     return target;
 }
 
-std::vector<Vec3> startPositions(Band& band, const SurfaceIndex& index) {
-    std::vector<Vec3> goal = band.start;
+Positions startPositions(Band& band, const SurfaceIndex& index) {
+    Positions goal, x;
+    copyTo(goal, band.start);
     parallelFor(band.fronts, [&](std::size_t i) {
         const std::size_t n = band.walls + i;
         SegmentHit hit = index.firstHit(band.inside[i], band.start[n]);
@@ -180,8 +176,7 @@ std::vector<Vec3> startPositions(Band& band, const SurfaceIndex& index) {
         for (std::int32_t b : band.fansOf[i]) goal[static_cast<std::size_t>(b)] += goal[n] - band.start[n];
     });
     giveUp(band.away);
-    if (std::find(band.behind.begin(), band.behind.end(), 1) == band.behind.end()) return band.start;
-    std::vector<Vec3> x;
+    if (std::find(band.behind.begin(), band.behind.end(), 1) == band.behind.end()) return goal;
     blend(band, band.start, goal, x);
     return x;
 }
@@ -193,9 +188,9 @@ Vec3 seenFront(const SurfaceIndex& index, const Band& band, std::size_t wall, co
     return hit ? band.inside[i] + (f - band.inside[i]) * (0.5 * hit.t) : f;
 }
 
-std::vector<Vec3> goalPositions(const Band& band, const SurfaceIndex& index, const std::vector<Vec3>& start, int sweeps) {
-    std::vector<Vec3> x = start;
-    Positions copy;
+Positions goalPositions(const Band& band, const SurfaceIndex& index, const Positions& start, int sweeps) {
+    Positions x, copy;
+    copyTo(x, start);
     smoothSurface(band, index, start, x, copy);
     projectWalls(band, index, x, copy, true);
     for (int i = 0; i < sweeps; ++i) {

@@ -11,7 +11,7 @@ namespace {
 
 class Inserter {
   public:
-    Inserter(Front& front, WallViews& views, const FeatureIndex& features, std::vector<Vec3>& x,
+    Inserter(Front& front, WallViews& views, const FeatureIndex& features, Positions& x,
              std::vector<Snap>& snaps)
         : front_(front), band_(views.band()), index_(views.index()), features_(features), x_(x), snaps_(snaps), marks_(markWall(views, features, x, snaps)),
           cutter_(front_, band_, index_, features_, x_, marks_, crossings_, crossingOf_) {}
@@ -30,7 +30,7 @@ class Inserter {
     const Band& band_;
     const SurfaceIndex& index_;
     const FeatureIndex& features_;
-    std::vector<Vec3>& x_;
+    Positions& x_;
     std::vector<Snap>& snaps_;
     const WallMarks marks_;
     std::vector<EdgeCrossing> crossings_;
@@ -191,7 +191,7 @@ std::size_t Inserter::run() {
 
 } // namespace
 
-std::size_t insertVertices(Front& front, WallViews& views, const FeatureIndex& features, std::vector<Vec3>& x,
+std::size_t insertVertices(Front& front, WallViews& views, const FeatureIndex& features, Positions& x,
                            std::vector<Snap>& snaps) {
     return Inserter(front, views, features, x, snaps).run();
 }

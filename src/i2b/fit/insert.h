@@ -10,7 +10,7 @@ namespace i2b {
 
 // x: the fitted positions of the band's nodes, as stored in front, where front nodes make room. The band does not know the
 // new vertices; snaps, of the band's wall nodes, gets one for each of them: the line that it is on. Gives how many were inserted.
-std::size_t insertVertices(Front& front, WallViews& views, const FeatureIndex& features, std::vector<Vec3>& x,
+std::size_t insertVertices(Front& front, WallViews& views, const FeatureIndex& features, Positions& x,
                            std::vector<Snap>& snaps);
 
 } // namespace i2b

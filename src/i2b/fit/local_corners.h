@@ -71,7 +71,7 @@ struct Derivatives {
 class LocalCorners {
   public:
     // Looks at the corners of a node.
-    void gather(const Band& band, std::size_t node, const std::vector<Vec3>& x);
+    void gather(const Band& band, std::size_t node, const Positions& x);
     bool empty() const { return count_ == 0; }
     double worstScaledJacobian() const; // at most 1
     // Of sum w phi^3, with phi = T D^(-2/3) / 4 + (D + 1/D) / 8, after a move of the node by d; infinite where a D <= 0.
@@ -99,7 +99,7 @@ class LocalCorners {
     std::vector<Group> groups_;
 };
 
-inline void LocalCorners::gather(const Band& band, std::size_t node, const std::vector<Vec3>& x) {
+inline void LocalCorners::gather(const Band& band, std::size_t node, const Positions& x) {
     // What a node needs is seldom near what the one before had: all of it is asked for before any is used.
     band.corners.prefetchAround(node);
     around_.clear();

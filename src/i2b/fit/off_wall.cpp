@@ -17,7 +17,7 @@ const double folded = std::cos(35 * 3.14159265358979323846 / 180);
 struct Node {
     const Band& band;
     const SurfaceIndex& index;
-    const std::vector<Vec3>& x;
+    const Positions& x;
     std::size_t n;
     double h;
     Vec3 f, b;      // front as seen from the flow, wall
@@ -126,7 +126,7 @@ OffCause causeOf(const Node& node, const FeatureIndex& features, const Snap& sna
 } // namespace
 
 std::vector<OffCause> findOffCauses(const Band& band, const SurfaceIndex& index, const FeatureIndex& features,
-                                    const std::vector<Snap>& snaps, const std::vector<Vec3>& x, const EnergyOptions& options) {
+                                    const std::vector<Snap>& snaps, const Positions& x, const EnergyOptions& options) {
     std::vector<OffCause> causes(band.walls, OffCause::none);
     parallelFor(band.walls, [&](std::size_t n) {
         const double h = band.h[n];

@@ -26,6 +26,6 @@ inline constexpr double offInterest = 0.005;
 
 // Per wall node; x: m, per node of the band; snaps: per wall node; options: the floors. The same on any number of threads.
 std::vector<OffCause> findOffCauses(const Band& band, const SurfaceIndex& index, const FeatureIndex& features,
-                                    const std::vector<Snap>& snaps, const std::vector<Vec3>& x, const EnergyOptions& options);
+                                    const std::vector<Snap>& snaps, const Positions& x, const EnergyOptions& options);
 
 } // namespace i2b

@@ -5,7 +5,7 @@
 namespace i2b {
 
 void snapExactly(WallViews& views, const FeatureIndex& features, const std::vector<Snap>& snaps,
-                 std::vector<Vec3>& x, const EnergyOptions& options) {
+                 Positions& x, const EnergyOptions& options) {
     const Band& band = views.band();
     const auto snapOne = [&](std::size_t b) {
         const Vec3 old = x[b];

@@ -17,10 +17,10 @@ class WallViews {
     const Band& band() const { return band_; }
     const SurfaceIndex& index() const { return index_; }
     // wallTarget() and footOf() of a wall node with the band's nodes at x. One node is asked for by one thread at a time.
-    const WallTarget& target(std::size_t wall, const std::vector<Vec3>& x) {
+    const WallTarget& target(std::size_t wall, const Positions& x) {
         return seen(targets_[wall], wall, x, [&](const Vec3& front) { return wallTarget(index_, band_, wall, front, x[wall]); });
     }
-    const Foot& foot(std::size_t wall, const std::vector<Vec3>& x) {
+    const Foot& foot(std::size_t wall, const Positions& x) {
         return seen(feet_[wall], wall, x, [&](const Vec3&) { return footOf(band_, index_, x, wall); });
     }
 
@@ -32,7 +32,7 @@ class WallViews {
         bool isKnown;
     };
     template <class What, class Look>
-    const What& seen(View<What>& view, std::size_t wall, const std::vector<Vec3>& x, const Look& look) const {
+    const What& seen(View<What>& view, std::size_t wall, const Positions& x, const Look& look) const {
         const Vec3& front = x[static_cast<std::size_t>(band_.frontNode[wall])];
         if (!view.isKnown || !(view.wall == x[wall]) || !(view.front == front)) view = {x[wall], front, look(front), true};
         return view.what;
