@@ -5,6 +5,7 @@
 #include "i2b/carve/passages.h"
 #include "i2b/core/checksum.h"
 #include "i2b/core/error.h"
+#include "i2b/core/parallel_sort_unique.h"
 #include "i2b/grid/ranked_mask.h"
 #include <algorithm>
 #include <fmt/format.h>
@@ -25,7 +26,7 @@ std::vector<Place> collect(const std::vector<Place>& places, const CellGrid& gri
     });
     std::vector<Place> all;
     for (const std::vector<Place>& part : parts) all.insert(all.end(), part.begin(), part.end());
-    sortUnique(all);
+    parallelSortUnique(all);
     return all;
 }
 

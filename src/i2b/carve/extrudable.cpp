@@ -1,8 +1,9 @@
 #include "i2b/carve/extrudable.h"
+#include "i2b/core/parallel_sort_unique.h"
+#include "i2b/core/sort_unique.h"
 #include "i2b/grid/ranked_mask.h"
 #include <algorithm>
 #include <set>
-#include <tbb/parallel_sort.h>
 
 namespace i2b {
 namespace {
@@ -205,7 +206,7 @@ void Shaper::cellsAround(const Place& cell, VertexLookup& lookup, std::vector<Pl
 // Vertices that a change of these cells tells on: those around, and what their neighbours' edges see at the other end.
 std::vector<Place> Shaper::seeing(const std::vector<Place>& cells) const {
     std::vector<Place> around = collect(cells, 4, [&](const Place& cell, VertexLookup& lookup, std::vector<Place>& out) { cellsAround(cell, lookup, out); });
-    sortUnique(around);
+    parallelSortUnique(around);
     return collect(around, 16, [&](const Place& cell, VertexLookup& lookup, std::vector<Place>& out) {
         const std::vector<Place> vertices = verticesOf({cell}, lookup, grid_);
         out.insert(out.end(), vertices.begin(), vertices.end());
@@ -260,7 +261,7 @@ std::vector<Place> Shaper::cutBack(const std::vector<Place>& bad) {
     std::vector<Place> cells;
     VertexLookup lookup(grid_, kept_);
     for (const Place& v : bad) removeNearest(v, lookup, cells);
-    sortUnique(cells);
+    parallelSortUnique(cells);
     for (const Place& cell : cells) {
         set(cell, false);
         gone_.insert(cell);
@@ -276,18 +277,13 @@ ShapingSummary Shaper::run() {
         if (changed.empty()) changed = cutBack(bad);
         std::vector<Place> around = seeing(changed);
         around.insert(around.end(), bad.begin(), bad.end());
-        sortUnique(around);
+        parallelSortUnique(around);
         bad = faulty(around);
     }
     return summary_;
 }
 
 } // namespace
-
-void sortUnique(std::vector<Place>& places) {
-    tbb::parallel_sort(places.begin(), places.end());
-    places.erase(std::unique(places.begin(), places.end()), places.end());
-}
 
 std::vector<Place> placesOf(const std::vector<Mask::Ptr>& masks) {
     std::vector<Place> places;
@@ -309,7 +305,7 @@ std::vector<Place> verticesOf(const std::vector<Place>& cells, VertexLookup& loo
             if (const std::optional<Place> v = lookup.vertexAt(lookup.fine(half, p))) vertices.push_back(*v);
         }
     }
-    sortUnique(vertices);
+    parallelSortUnique(vertices);
     return vertices;
 }
 

@@ -19,8 +19,6 @@ ShapingSummary makeExtrudable(std::vector<Mask::Ptr>& kept, const CellGrid& grid
 // Vertices on the closed cells, each on its own level, in order.
 std::vector<Place> verticesOf(const std::vector<Place>& cells, VertexLookup& lookup, const CellGrid& grid);
 
-void sortUnique(std::vector<Place>& places);
-
 // All places of the masks: by level, then in the order of the tree.
 std::vector<Place> placesOf(const std::vector<Mask::Ptr>& masks);
 

@@ -1,8 +1,8 @@
 #include "i2b/carve/passages.h"
 #include "i2b/core/collect.h"
+#include "i2b/core/parallel_sort_unique.h"
 #include <algorithm>
 #include <span>
-#include <tbb/parallel_sort.h>
 
 namespace i2b {
 namespace {
@@ -24,8 +24,7 @@ RawVector<Place> besides(const Room& room, const Steps& last, const Steps& reach
             if (room.isCandidate(n) && !room.isKept(n) && !contains(reached, n)) put(n);
         }
     }, 256);
-    tbb::parallel_sort(places.begin(), places.end());
-    places.erase(std::unique(places.begin(), places.end()), places.end());
+    parallelSortUnique(places);
     return places;
 }
 
