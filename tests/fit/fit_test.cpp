@@ -1,5 +1,6 @@
 // Proves: no step of the fit inverts a corner; the energy falls, ends where its gradient is nought and its
-// gradient is the one that finite differences give; the corners around nodes are those of the band's cells and prisms; the exact snap keeps the floor; the domain's sides stay
+// gradient is the one that finite differences give; the corners around nodes are those of the band's cells and
+// prisms; the exact snap keeps the floor; the domain's sides stay
 // planes to the last bit; the front stands off as far as layers want; nodes that are to stay do.
 #include "carve/kept_checks.h"
 #include "i2b/carve/carve.h"

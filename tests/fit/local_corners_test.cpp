@@ -66,7 +66,6 @@ struct Star {
             corner.weight = i % 3 == 0 ? 4 : 1;
             around[i] = static_cast<std::int32_t>(i);
         }
-        band.corners.prismRows = 1;
         band.corners.cellsOf.start.assign(2, 0);
         band.corners.prismsOf.start.assign({0, static_cast<std::int64_t>(corners)});
         band.corners.prismsOf.values = std::move(around);

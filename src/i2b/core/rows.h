@@ -2,7 +2,7 @@
 // does not show, since each row is put in order at the end.
 #pragma once
 #include "i2b/core/parallel.h"
-#include "i2b/core/raw_vector.h"
+#include "i2b/core/raw_fill.h"
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -17,12 +17,10 @@ void turnIntoRows(std::size_t rows, std::size_t first, std::size_t last, const R
                   RawVector<std::int32_t>& items) {
     const auto raise = [](Start& n) { return std::atomic_ref<Start>(n).fetch_add(1, std::memory_order_relaxed); };
     constexpr std::size_t grain = 2048;
-    RawVector<Start> next(rows + 1);
-    parallelFor(rows + 1, [&](std::size_t r) { next[r] = 0; }, 4 * grain);
+    RawVector<Start> next = filled(rows + 1, Start(0));
     parallelFor(last - first, [&](std::size_t i) { rowsOf(first + i, [&](std::size_t r) { raise(next[r]); }); }, grain);
     items.resize(static_cast<std::size_t>(exclusiveScan(next)));
-    start.resize(rows + 1);
-    parallelFor(rows + 1, [&](std::size_t r) { start[r] = next[r]; }, 4 * grain);
+    copyTo(start, next);
     parallelFor(last - first, [&](std::size_t i) {
         rowsOf(first + i, [&](std::size_t r) { items[static_cast<std::size_t>(raise(next[r]))] = static_cast<std::int32_t>(first + i); });
     }, grain);

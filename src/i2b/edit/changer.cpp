@@ -50,6 +50,11 @@ std::int64_t facesTwice(const PolyMesh& mesh) {
     return m.report.duplicateFaces;
 }
 
+bool hasNoMoreTwice(const PolyMesh& now, const PolyMesh& before) {
+    const std::int64_t twice = facesTwice(now);
+    return twice == 0 || twice <= facesTwice(before);
+}
+
 bool isBetter(const Verdict& now, const Verdict& before) {
     for (Index i = 0; i < now.counts.size(); ++i)
         if (now.counts[i] > before.counts[i]) return false;
@@ -167,7 +172,7 @@ bool Changer::helps(const Trial& united) const {
     const Verdict before = judge(was, limits_);
     if (before.faces == 0) return false;
     const LocalEdits::Surroundings now = edits_.around(united);
-    return isBetter(judge(now, limits_), before) && hasNoMoreTwice(now.mesh, [&]() -> const PolyMesh& { return was.mesh; });
+    return isBetter(judge(now, limits_), before) && hasNoMoreTwice(now.mesh, was.mesh);
 }
 
 std::size_t Changer::HashGroups::operator()(const std::vector<std::int32_t>& groups) const {
@@ -232,7 +237,7 @@ std::optional<LocalEdits::Trial> Changer::divide(std::int32_t face, const PolyMe
     for (const Trial& trial : divisionsOf(face)) {
         const LocalEdits::Surroundings now = edits_.around(trial);
         const Verdict v = judge(now, limits_);
-        if (isBetter(v, least) && hasNoMoreTwice(now.mesh, [&]() -> const PolyMesh& { return whole; })) least = v, best = trial;
+        if (isBetter(v, least) && hasNoMoreTwice(now.mesh, whole)) least = v, best = trial;
     }
     return best;
 }
@@ -270,7 +275,7 @@ bool areBetter(const LocalEdits& before, const LocalEdits& then, const LocalEdit
     for (const std::int32_t g : groups) after.push_back(both.of(g));
     sortUnique(after);
     const LocalEdits::Surroundings now = both.around({after}), was = before.around({groups});
-    return isBetter(judge(now, limits), judge(was, limits)) && hasNoMoreTwice(now.mesh, [&]() -> const PolyMesh& { return was.mesh; });
+    return isBetter(judge(now, limits), judge(was, limits)) && hasNoMoreTwice(now.mesh, was.mesh);
 }
 
 } // namespace

@@ -25,13 +25,9 @@ bool anyBeyond(LocalEdits::Surroundings around, const DictionaryLimits& dictiona
 bool isBetter(const Verdict& now, const Verdict& before);
 // Nothing that a check names worse, and the worst faces as far within the limits as repair leaves others, or no nearer to them than before?
 bool isNoWorse(const Verdict& now, const Verdict& was, const DictionaryLimits& limits);
-// Faces that are there twice. Asked where all else is better, for it takes as long; of the mesh before only where there are any.
+// Faces that are there twice: asked where all else is better, for it takes as long.
 std::int64_t facesTwice(const PolyMesh& mesh);
-template <class Before>
-bool hasNoMoreTwice(const PolyMesh& now, const Before& before) { // before(): the mesh
-    const std::int64_t twice = facesTwice(now);
-    return twice == 0 || twice <= facesTwice(before());
-}
+bool hasNoMoreTwice(const PolyMesh& now, const PolyMesh& before);
 
 // Two groups, or one, as they are.
 LocalEdits::Trial still(std::int32_t a, std::int32_t b);

@@ -218,7 +218,7 @@ LocalEdits::Surroundings ZipStar::around(State state, const PointMove& move, con
 
 bool ZipStar::isNoWorse(const PointMove& move, const std::vector<std::int32_t>& star, const DictionaryLimits& limits) const {
     const LocalEdits::Surroundings before = around(State::first, {}, star), after = around(State::now, move, star);
-    return i2b::isNoWorse(judge(after, limits), judge(before, limits), limits) && hasNoMoreTwice(after.mesh, [&]() -> const PolyMesh& { return before.mesh; });
+    return i2b::isNoWorse(judge(after, limits), judge(before, limits), limits) && hasNoMoreTwice(after.mesh, before.mesh);
 }
 
 Verdict ZipStar::before(const Zip& zip, const DictionaryLimits& limits) const {
@@ -231,7 +231,9 @@ Verdict ZipStar::now(const Zip& zip, const DictionaryLimits& limits) const { ret
 
 bool ZipStar::isNoWorse(const Zip& zip, const Verdict& before, const DictionaryLimits& limits) const {
     const LocalEdits::Surroundings after = around(State::now, {}, zip.star);
-    return i2b::isNoWorse(judge(after, limits), before, limits) && hasNoMoreTwice(after.mesh, [&] { return around(State::first, {}, zip.star).mesh; });
+    if (!i2b::isNoWorse(judge(after, limits), before, limits)) return false;
+    const std::int64_t twice = facesTwice(after.mesh);
+    return twice == 0 || twice <= facesTwice(around(State::first, {}, zip.star).mesh);
 }
 
 void ZipStar::apply(const PointMove& move) {

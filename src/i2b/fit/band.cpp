@@ -37,7 +37,10 @@ Csr<std::int32_t> rowsOfCells(const BandCorners& corners, std::size_t rows) {
             if (static_cast<std::size_t>(n) < rows) put(static_cast<std::size_t>(n));
         };
         const CornerCell& cell = corners.cells[c];
-        if (cell.level != CornerCell::hasCorners) return std::ranges::for_each(cell.node, offer), void();
+        if (cell.level != CornerCell::hasCorners) {
+            std::ranges::for_each(cell.node, offer);
+            return;
+        }
         // Each node once, at the first of the cell's corners that has it.
         for (std::int32_t i = cell.node[0]; i < cell.node[1]; ++i) {
             for (const std::int32_t n : corners.list[static_cast<std::size_t>(i)].node) {
@@ -282,12 +285,10 @@ void renewPrisms(Band& band, const Front& front) {
         Corner* next = band.corners.list.data() + band.corners.prisms + first[c];
         for (std::size_t f = begin; f < end; ++f) next += addPrism(band, front, f, {nullptr, next});
     });
-    band.corners.prismRows = band.walls + band.fronts;
     giveUp(band.corners.prismsOf.values);
-    band.corners.prismsOf = rowsOfPrisms(band.corners, band.corners.prismRows);
+    band.corners.prismsOf = rowsOfPrisms(band.corners, band.walls + band.fronts);
     const Csr<BandEdge> wall = edgesOf(band.walls, pieces, [&](std::int32_t a, std::int32_t b) { return wallEdge(band, a, b); });
     // Each wall node has its front node last: higher in number than all wall nodes.
-    band.edges.changingRows = band.walls;
     Csr<BandEdge>& edges = band.edges.changing;
     edges.values.clear();
     edges.values.resize(wall.values.size() + band.walls);

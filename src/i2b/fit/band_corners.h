@@ -48,7 +48,6 @@ struct BandCorners {
     std::vector<std::array<float, 3>> inverseSize; // 1/m, per level: of the lattice's cells along x, y, z
     Csr<std::int32_t> cellsOf;            // per movable node
     Csr<std::int32_t> prismsOf;           // per wall and front node: the prisms' corners in the list
-    std::size_t prismRows = 0;            // wall and front nodes
 
     // f(corner) for each corner around a movable node: the core's, cell by cell, then the prisms'.
     template <class F>
@@ -64,7 +63,7 @@ struct BandCorners {
     }
     void prefetchAround(std::size_t node) const {
         for (const std::int32_t c : cellsOf[node]) __builtin_prefetch(&cells[static_cast<std::size_t>(c)]);
-        if (node >= prismRows) return;
+        if (node >= prismsOf.rows()) return;
         for (const std::int32_t c : prismsOf[node]) __builtin_prefetch(&list[static_cast<std::size_t>(c)]);
     }
 
@@ -91,7 +90,7 @@ void BandCorners::around(std::size_t node, const F& f) const {
                 if (list[static_cast<std::size_t>(i)].has(n)) f(list[static_cast<std::size_t>(i)]);
         }
     }
-    if (node >= prismRows) return;
+    if (node >= prismsOf.rows()) return;
     for (const std::int32_t c : prismsOf[node]) f(list[static_cast<std::size_t>(c)]);
 }
 

@@ -11,6 +11,7 @@ template <class T>
 struct Csr { // rows of values
     RawVector<std::int64_t> start;        // rows + 1
     RawVector<T> values;
+    std::size_t rows() const { return start.empty() ? 0 : start.size() - 1; }
     std::span<const T> operator[](std::size_t row) const {
         return {values.data() + start[row], values.data() + start[row + 1]};
     }
@@ -20,8 +21,7 @@ struct Csr { // rows of values
 template <class T>
 struct ChangingCsr {
     Csr<T> changing, fixed;
-    std::size_t changingRows = 0;
-    std::span<const T> operator[](std::size_t row) const { return row < changingRows ? changing[row] : fixed[row]; }
+    std::span<const T> operator[](std::size_t row) const { return row < changing.rows() ? changing[row] : fixed[row]; }
 };
 
 } // namespace i2b

@@ -1,9 +1,9 @@
 #include "i2b/geometry/feature_corners.h"
 #include "i2b/core/collect.h"
+#include "i2b/core/parallel_sort_unique.h"
 #include "i2b/core/rows.h"
 #include "i2b/geometry/feature_edges.h"
 #include <algorithm>
-#include <tbb/parallel_sort.h>
 
 namespace i2b {
 namespace {
@@ -25,8 +25,7 @@ class Meetings {
   public:
     Meetings(std::span<const Vec3> points, const RawVector<FeatureEdge>& lines) : points_(points), places_(2 * lines.size()) {
         parallelFor(lines.size(), [&](std::size_t i) { places_[2 * i] = lines[i].a, places_[2 * i + 1] = lines[i].b; }, 4096);
-        tbb::parallel_sort(places_);
-        places_.erase(std::unique(places_.begin(), places_.end()), places_.end());
+        parallelSortUnique(places_);
         RawVector<std::uint32_t> start;
         RawVector<std::int32_t> ends; // two for each line
         const auto pointOf = [&](std::size_t end) { return end % 2 == 0 ? lines[end / 2].a : lines[end / 2].b; };

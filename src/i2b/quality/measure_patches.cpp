@@ -1,5 +1,6 @@
 // Patches as surfaces, zones, regions, and the directions that empty and wedge patches take out.
 #include "i2b/core/collect.h"
+#include "i2b/core/parallel_sort_unique.h"
 #include "i2b/quality/measure_steps.h"
 #include <algorithm>
 #include <atomic>
@@ -43,8 +44,7 @@ std::vector<std::int32_t> patchPoints(const PolyMesh& mesh, const Patch& patch) 
     std::vector<std::int32_t> points(mesh.faceVertices.begin() + mesh.faceOffsets[Index(patch.start)],
                                      mesh.faceVertices.begin() +
                                          mesh.faceOffsets[Index(patch.start + patch.count)]);
-    tbb::parallel_sort(points.begin(), points.end());
-    points.erase(std::unique(points.begin(), points.end()), points.end());
+    parallelSortUnique(points);
     return points;
 }
 

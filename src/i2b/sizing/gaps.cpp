@@ -1,10 +1,10 @@
 #include "i2b/sizing/gaps.h"
 #include "i2b/core/give_up.h"
 #include "i2b/core/parallel.h"
+#include "i2b/core/parallel_sort_unique.h"
 #include "i2b/core/sort_unique.h"
 #include <algorithm>
 #include <array>
-#include <tbb/parallel_sort.h>
 #include <tuple>
 
 namespace i2b {
@@ -175,8 +175,7 @@ std::vector<LevelCells> cellsAlong(const std::vector<Gap>& gaps, const Lattice& 
             all.insert(all.end(), part[l].begin(), part[l].end());
             giveUp(part[l]);
         }
-        tbb::parallel_sort(all);
-        all.erase(std::unique(all.begin(), all.end()), all.end());
+        parallelSortUnique(all);
         if (!all.empty()) levels.push_back({allAxes(static_cast<int>(l)), std::move(all)});
     }
     return levels;
