@@ -19,14 +19,9 @@ constexpr double bent = 0.03;        // of h: an edge farther off the geometry b
 constexpr double flat = 0.015;       // of h: one whose middle is so near bridges none: at a single bend it is half as far off at least
 constexpr double besideLine = 0.25;  // of h: bends nearer to a line are a part of it
 constexpr double steep = 0.7;        // cosine: edges along a line lead across no bend beside it
+constexpr double strays = 0.25;      // of a way along a line: how far off that it may have bent,
+constexpr double goesOn = 0.9;       // and the cosine that it must not turn by more
 constexpr int looks = 8;             // equal parts of an edge, between which a bend is looked for
-
-// Of a crossing whose place on the wall is known: its place on the front.
-void placeOnFront(const Band& band, const SurfaceIndex& index, const Positions& x, EdgeCrossing& c) {
-    const auto frontOf = [&](std::int32_t n) { return x[std::size_t(band.frontNode[std::size_t(n)])]; };
-    c.front = Front::Inserted{{c.p, c.q}, c.t}.frontAt(frontOf(c.p), frontOf(c.q), c.wall);
-    c.alive = !index.firstHit(c.front, c.wall, 0.97);
-}
 
 struct Finder {
     const Front& front;
@@ -198,7 +193,8 @@ EdgeCrossing Finder::on(std::int32_t edge) const {
     if (norm(a + (b - a) * c.t - c.wall) > farOff * length) return c;
     const auto isAt = [&](std::size_t n) { return marks.onLine[n] && norm(c.wall - x[n]) < nearHeld * band.h[p]; };
     if (isAt(p) || isAt(q)) return c;
-    placeOnFront(band, index, x, c);
+    placeOnFront(band, x, c, c.t);
+    c.alive = isFree(index, c);
     return c;
 }
 
@@ -242,19 +238,38 @@ std::vector<EdgeCrossing> findCrossings(const Front& front, const Band& band, co
     return {found.begin(), found.end()};
 }
 
-void followFront(const Band& band, const SurfaceIndex& index, const Positions& x, std::vector<EdgeCrossing>& crossings) {
-    parallelFor(crossings.size(), [&](std::size_t i) { placeOnFront(band, index, x, crossings[i]); }, 64);
+void placeOnFront(const Band& band, const Positions& x, EdgeCrossing& c, double t) {
+    const auto frontOf = [&](std::int32_t n) { return x[std::size_t(band.frontNode[std::size_t(n)])]; };
+    c.t = t;
+    c.front = Front::Inserted{{c.p, c.q}, c.t}.frontAt(frontOf(c.p), frontOf(c.q), c.wall);
 }
 
-bool stepAside(const Band& band, const SurfaceIndex& index, const Positions& x, EdgeCrossing& c) {
+double shareUnder(const Band& band, const Positions& x, const EdgeCrossing& c) {
     const Vec3 &p = x[std::size_t(band.frontNode[std::size_t(c.p)])], &q = x[std::size_t(band.frontNode[std::size_t(c.q)])];
     const double length2 = norm2(q - p);
-    if (length2 == 0) return false;
-    const double t = std::clamp(dot(c.wall - p, q - p) / length2, nearEnd, 1 - nearEnd);
-    if (t == c.t) return false;
-    c.t = t;
-    placeOnFront(band, index, x, c);
-    return true;
+    return length2 == 0 ? c.t : std::clamp(dot(c.wall - p, q - p) / length2, nearEnd, 1 - nearEnd);
+}
+
+bool slideAlong(const SurfaceIndex& index, const FeatureIndex& features, EdgeCrossing& c, double way) {
+    const Vec3 place = c.wall + c.tangent * way;
+    if (c.kind == SnapKind::line) {
+        const FeatureIndex::Line line = features.closestLine(place, strays * std::abs(way));
+        if (!line.found || std::abs(dot(line.tangent, c.tangent)) < goesOn) return false;
+        c.wall = line.point, c.tangent = line.tangent, c.onRim = line.isRim;
+        return true;
+    }
+    const ClosestPoint on = c.kind == SnapKind::implicitLine ? index.closest(place, strays * std::abs(way)) : ClosestPoint{};
+    if (on) c.wall = on.point;
+    return bool(on);
+}
+
+bool isFree(const SurfaceIndex& index, const EdgeCrossing& c) { return !index.firstHit(c.front, c.wall, 0.97); }
+
+void followFront(const Band& band, const SurfaceIndex& index, const Positions& x, std::vector<EdgeCrossing>& crossings) {
+    parallelFor(crossings.size(), [&](std::size_t i) {
+        placeOnFront(band, x, crossings[i], crossings[i].t);
+        crossings[i].alive = isFree(index, crossings[i]);
+    }, 64);
 }
 
 } // namespace i2b

@@ -35,7 +35,16 @@ std::vector<EdgeCrossing> findCrossings(const Front& front, const Band& band, co
 // After nodes of the front have moved. Those that geometry now parts from their place on the line are no longer alive.
 void followFront(const Band& band, const SurfaceIndex& index, const Positions& x, std::vector<EdgeCrossing>& crossings);
 
-// Puts a crossing's place on the front where its edge comes nearest to the place on the wall. Gives whether it moved.
-bool stepAside(const Band& band, const SurfaceIndex& index, const Positions& x, EdgeCrossing& crossing);
+// Puts a crossing's place on the front at this share of its edge.
+void placeOnFront(const Band& band, const Positions& x, EdgeCrossing& crossing, double t);
+
+// The share at which the edge of the front comes nearest to the place on the wall, off its ends.
+double shareUnder(const Band& band, const Positions& x, const EdgeCrossing& crossing);
+
+// Slides a crossing's place on the wall along its line, m. False: there is no line there.
+bool slideAlong(const SurfaceIndex& index, const FeatureIndex& features, EdgeCrossing& crossing, double way);
+
+// Whether no geometry lies between the two places.
+bool isFree(const SurfaceIndex& index, const EdgeCrossing& crossing);
 
 } // namespace i2b

@@ -103,22 +103,30 @@ bool FaceCutter::isOnOneEdge(const CutRing& ring) const {
     return front_.areOnOneEdge(vertices);
 }
 
-// Corners of the prism on a piece; new vertices in the middle of an edge have none, nor has any where the piece goes on all but straight.
-bool FaceCutter::isValid(const CutRing& ring, double worst) const {
+// Of the corners of the prism on a piece; new vertices in the middle of an edge have none, nor has any where the piece goes on all but straight.
+double FaceCutter::worstCorner(const CutRing& ring, const EdgeCrossing* moved) const {
     const std::size_t n = ring.size();
-    if (n > mostVertices || isOnOneEdge(ring) || std::any_of(ring.begin(), ring.end(), [&](const CutPlace& p) { return dents(p); })) return false;
-    const auto isGood = [worst](const Vec3& a, const Vec3& b, const Vec3& c) {
+    if (n > mostVertices || isOnOneEdge(ring) || std::any_of(ring.begin(), ring.end(), [&](const CutPlace& p) { return dents(p); })) return -1;
+    double worst = 1;
+    const auto take = [&worst](const Vec3& a, const Vec3& b, const Vec3& c) {
+        if (dot(a, b) < straight * norm(a) * norm(b)) return;
         const double l = norm(a) * norm(b) * norm(c);
-        return (l > 0 && dot(cross(a, b), c) >= worst * l) || dot(a, b) < straight * norm(a) * norm(b);
+        worst = std::min(worst, l > 0 ? dot(cross(a, b), c) / l : -1);
     };
     for (std::size_t i = 0; i < n; ++i) {
         const CutPlace &before = ring[(i + n - 1) % n], &at = ring[i], &after = ring[(i + 1) % n];
         if (at.vertex < 0 && !at.isEnd) continue;
-        const Vec3 way = wallAt(at) - frontAt(at);
-        if (!isGood(frontAt(after) - frontAt(at), frontAt(before) - frontAt(at), way)) return false;
-        if (!isGood(wallAt(before) - wallAt(at), wallAt(after) - wallAt(at), -way)) return false;
+        const Vec3 &wall = wallAt(at, moved), &front = frontAt(at, moved), way = wall - front;
+        take(frontAt(after, moved) - front, frontAt(before, moved) - front, way);
+        take(wallAt(before, moved) - wall, wallAt(after, moved) - wall, -way);
     }
-    return true;
+    return worst;
+}
+
+double FaceCutter::worstCorner(const std::vector<CutRing>& pieces, const EdgeCrossing& moved) const {
+    double worst = 1;
+    for (const CutRing& piece : pieces) worst = std::min(worst, worstCorner(piece, &moved));
+    return worst;
 }
 
 bool FaceCutter::isOptional(const CutPlace& p) const { return p.crossing >= 0 && crossings_[std::size_t(p.crossing)].kind == SnapKind::none; }
@@ -178,7 +186,7 @@ FaceCuts FaceCutter::cutsOf(std::size_t face) const {
     const bool touched = cuts.pieces.size() > 1 || std::any_of(ring.begin(), ring.end(), [](const CutPlace& p) { return p.vertex < 0; });
     const bool mustBeGood = std::any_of(ring.begin(), ring.end(), [&](const CutPlace& p) { return isOptional(p); });
     const double worst = mustBeGood ? leastGood : leastCorner;
-    cuts.valid = !touched || std::all_of(cuts.pieces.begin(), cuts.pieces.end(), [&](const CutRing& piece) { return isValid(piece, worst); });
+    cuts.valid = !touched || std::all_of(cuts.pieces.begin(), cuts.pieces.end(), [&](const CutRing& piece) { return worstCorner(piece) >= worst; });
     if (cuts.valid && cuts.pieces.size() > 1 && std::any_of(ring.begin(), ring.end(), [&](const CutPlace& p) { return isOnBend(p); })) cuts.valid = isNearer(ring, cuts.pieces);
     return cuts;
 }

@@ -28,6 +28,8 @@ class FaceCutter {
         : front_(front), band_(band), index_(index), features_(features), x_(x), marks_(marks), crossings_(crossings), crossingOf_(crossingOf) {}
 
     FaceCuts cutsOf(std::size_t face) const;
+    // The worst scaled Jacobian of the prisms' corners on pieces of a face, if a crossing were where moved, of the same edge, is; -1: none can be.
+    double worstCorner(const std::vector<CutRing>& pieces, const EdgeCrossing& moved) const;
     // Does no line ask for it?
     bool isOptional(const CutPlace& p) const;
     // For corners of a piece that have too little height under the front.
@@ -42,15 +44,21 @@ class FaceCutter {
     bool liesOnLine(const CutRing& ring, std::size_t from, std::size_t to) const;
     Foot footUnder(const CutRing& ring, std::size_t from, std::size_t to) const;
     bool isOnOneEdge(const CutRing& ring) const;
-    bool isValid(const CutRing& ring, double worst) const;
+    double worstCorner(const CutRing& ring, const EdgeCrossing* moved = nullptr) const;
     bool isOnBend(const CutPlace& p) const;
     Lie lieOfRing(const CutRing& ring) const;
     bool isNearer(const CutRing& ring, const std::vector<CutRing>& pieces) const;
     bool dents(const CutPlace& p) const;
-    const Vec3& wallAt(const CutPlace& p) const { return p.vertex >= 0 ? x_[std::size_t(p.vertex)] : crossings_[std::size_t(p.crossing)].wall; }
+    const EdgeCrossing& crossingAt(const CutPlace& p, const EdgeCrossing* moved = nullptr) const {
+        const EdgeCrossing& c = crossings_[std::size_t(p.crossing)];
+        return moved && moved->edge == c.edge ? *moved : c;
+    }
+    const Vec3& wallAt(const CutPlace& p, const EdgeCrossing* moved = nullptr) const {
+        return p.vertex >= 0 ? x_[std::size_t(p.vertex)] : crossingAt(p, moved).wall;
+    }
     double hAt(const CutPlace& p) const { return band_.h[std::size_t(p.vertex >= 0 ? p.vertex : crossings_[std::size_t(p.crossing)].p)]; }
-    const Vec3& frontAt(const CutPlace& p) const {
-        return p.vertex >= 0 ? x_[std::size_t(band_.frontNode[std::size_t(p.vertex)])] : crossings_[std::size_t(p.crossing)].front;
+    const Vec3& frontAt(const CutPlace& p, const EdgeCrossing* moved = nullptr) const {
+        return p.vertex >= 0 ? x_[std::size_t(band_.frontNode[std::size_t(p.vertex)])] : crossingAt(p, moved).front;
     }
 
     const Front& front_;

@@ -5,9 +5,15 @@
 #include "i2b/fit/wall_views.h"
 #include "i2b/front/replace_faces.h"
 #include <algorithm>
+#include <array>
 
 namespace i2b {
 namespace {
+
+constexpr int placesTried = 8; // equal parts of an edge of the front, at whose ends a vertex may stand
+constexpr std::array slides{0.0, 0.1, -0.1, 0.2, -0.2, 0.3, -0.3, 0.4, -0.4}; // of h: so far along its line,
+constexpr double goodCorner = 0.15; // scaled Jacobian: no farther than to have such corners,
+constexpr int placingRounds = 2;    // and again after those beside it have
 
 class Inserter {
   public:
@@ -21,7 +27,9 @@ class Inserter {
     bool isOfWholeFace(std::int32_t edge) const;
     void lookForCrossings();
     std::vector<RoomWish> roomWanted(const std::vector<FaceCuts>& cuts) const;
-    bool stepAsideWhereRefused(const std::vector<FaceCuts>& cuts);
+    std::vector<std::uint8_t> stepAsideWhereRefused(const std::vector<FaceCuts>& cuts);
+    std::array<std::int32_t, 2> placesBeside(std::int32_t edge) const;
+    EdgeCrossing bestPlaceOf(const EdgeCrossing& crossing, const std::vector<FaceCuts>& cuts) const;
     bool mayKeepSome(const FaceCuts& cuts) const;
     bool prune(const std::vector<FaceCuts>& cuts);
     void apply(const std::vector<FaceCuts>& cuts);
@@ -84,10 +92,10 @@ bool Inserter::prune(const std::vector<FaceCuts>& cuts) {
     return any;
 }
 
-// A cut is refused where a prism of it would fold: the place on the front is then as straight under the wall's as its edge
-// allows, which follows the other side of the layer less evenly. Gives whether any crossing moved.
-bool Inserter::stepAsideWhereRefused(const std::vector<FaceCuts>& cuts) {
-    std::vector<std::uint8_t> refused(crossings_.size(), 0);
+// A cut is refused where a prism of it would fold: its crossings are then where the prisms beside them are best. Gives the faces, as places
+// in cuts, beside those that moved.
+std::vector<std::uint8_t> Inserter::stepAsideWhereRefused(const std::vector<FaceCuts>& cuts) {
+    std::vector<std::uint8_t> refused(crossings_.size(), 0), beside(cuts.size(), 0);
     for (const FaceCuts& c : cuts) {
         if (c.valid || c.pieces.size() < 2) continue;
         for (const CutRing& piece : c.pieces) {
@@ -96,11 +104,58 @@ bool Inserter::stepAsideWhereRefused(const std::vector<FaceCuts>& cuts) {
             }
         }
     }
-    bool any = false;
+    std::vector<EdgeCrossing> best(crossings_.size());
+    parallelFor(crossings_.size(), [&](std::size_t i) {
+        if (refused[i]) best[i] = bestPlaceOf(crossings_[i], cuts);
+    }, 16);
     for (std::size_t i = 0; i < crossings_.size(); ++i) {
-        if (refused[i]) any = stepAside(band_, index_, x_, crossings_[i]) || any;
+        if (!refused[i] || (best[i].t == crossings_[i].t && best[i].wall == crossings_[i].wall)) continue;
+        crossings_[i] = best[i];
+        for (const std::int32_t place : placesBeside(crossings_[i].edge)) {
+            if (place >= 0) beside[std::size_t(place)] = 1;
+        }
     }
-    return any;
+    return beside;
+}
+
+// The faces at both sides of an edge, as places in faces_; -1: none, or not to be cut.
+std::array<std::int32_t, 2> Inserter::placesBeside(std::int32_t edge) const {
+    std::array<std::int32_t, 2> places{-1, -1};
+    for (const unsigned side : {0u, 1u}) {
+        const auto face = front_.mesh.face_handle(front_.mesh.halfedge_handle(FrontMesh::EdgeHandle(edge), side));
+        const auto at = std::lower_bound(faces_.begin(), faces_.end(), face.idx());
+        if (face.is_valid() && at != faces_.end() && *at == face.idx()) places[side] = static_cast<std::int32_t>(at - faces_.begin());
+    }
+    return places;
+}
+
+// On the front as straight under its place on the wall as the edge allows, or at a share of it; on the wall where it is, or along the line as
+// little as will do: whichever gives the best corners, the first of equals.
+EdgeCrossing Inserter::bestPlaceOf(const EdgeCrossing& crossing, const std::vector<FaceCuts>& cuts) const {
+    const std::array<std::int32_t, 2> beside = placesBeside(crossing.edge);
+    EdgeCrossing best = crossing;
+    const auto cornerOf = [&](const EdgeCrossing& c) {
+        double corner = 1;
+        for (const std::int32_t face : beside)
+            if (face >= 0) corner = std::min(corner, cutter_.worstCorner(cuts[std::size_t(face)].pieces, c));
+        return corner;
+    };
+    double bestCorner = cornerOf(crossing);
+    const auto look = [&](EdgeCrossing c, double t) {
+        placeOnFront(band_, x_, c, t);
+        const double corner = cornerOf(c);
+        if (corner <= bestCorner || !isFree(index_, c)) return;
+        bestCorner = corner, best = c;
+    };
+    const double h = band_.h[std::size_t(crossing.p)];
+    for (const double slide : slides) {
+        EdgeCrossing c = crossing;
+        if (slide != 0 && !slideAlong(index_, features_, c, slide * h)) continue;
+        look(c, shareUnder(band_, x_, c));
+        for (int i = 1; i < placesTried; ++i) look(c, double(i) / placesTried);
+        if (bestCorner >= goodCorner) break;
+    }
+    return best;
 }
 
 void Inserter::apply(const std::vector<FaceCuts>& cuts) {
@@ -165,26 +220,28 @@ void Inserter::lookForCrossings() {
 std::size_t Inserter::run() {
     lookForCrossings();
     std::vector<FaceCuts> cuts;
-    const auto cutAll = [&] {
+    const auto cutAll = [&](const auto& isWanted) {
         cuts.resize(faces_.size());
-        parallelFor(faces_.size(), [&](std::size_t i) { cuts[i] = cutter_.cutsOf(static_cast<std::size_t>(faces_[i])); }, 64);
+        parallelFor(faces_.size(), [&](std::size_t i) {
+            if (isWanted(i)) cuts[i] = cutter_.cutsOf(static_cast<std::size_t>(faces_[i]));
+        }, 64);
     };
-    cutAll();
+    const auto any = [](std::size_t) { return true; };
+    cutAll(any);
     if (makeRoom(roomWanted(cuts), band_, index_, x_, front_) > 0) {
         followFront(band_, index_, x_, crossings_);
-        cutAll();
+        cutAll(any);
     }
-    if (stepAsideWhereRefused(cuts)) cutAll();
+    for (int round = 0; round < placingRounds; ++round) {
+        const std::vector<std::uint8_t> changed = stepAsideWhereRefused(cuts);
+        cutAll([&](std::size_t i) { return changed[i] != 0; });
+    }
     const auto isStale = [&](const FaceCuts& c) {
         return std::any_of(c.pieces.begin(), c.pieces.end(), [&](const CutRing& piece) {
             return std::any_of(piece.begin(), piece.end(), [&](const CutPlace& p) { return p.crossing >= 0 && !crossings_[std::size_t(p.crossing)].alive; });
         });
     };
-    while (prune(cuts)) {
-        parallelFor(faces_.size(), [&](std::size_t i) {
-            if (isStale(cuts[i])) cuts[i] = cutter_.cutsOf(static_cast<std::size_t>(faces_[i]));
-        }, 64);
-    }
+    while (prune(cuts)) cutAll([&](std::size_t i) { return isStale(cuts[i]); });
     apply(cuts);
     return front_.inserted.size();
 }
