@@ -42,7 +42,7 @@ double worstCorner(const Band& band, const Positions& x) {
 TEST(Crossings, OfEdgesBetweenLinesLieOnTheLineThatTheyPassOver) {
     Unsnapped run(ridged());
     snapToFeet(run);
-    const WallMarks marks = markWall(run.views, run.features, run.x, run.snaps);
+    const WallMarks marks = markWall(run.views, run.features, run.x, run.snaps, run.snaps);
     const std::vector<EdgeCrossing> crossings = findCrossings(run.front, run.band, *run.painted.index, run.features, run.x, marks);
     int between = 0;
     for (const EdgeCrossing& c : crossings) {

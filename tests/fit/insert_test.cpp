@@ -12,7 +12,7 @@
 namespace i2b::test {
 namespace {
 
-std::size_t insert(Unsnapped& run) { return insertVertices(run.front, run.views, run.features, run.x, run.snaps); }
+std::size_t insert(Unsnapped& run) { return insertVertices(run.front, run.views, run.features, run.x, run.snaps, run.snaps); }
 
 // What holds of inserted vertices wherever they come from.
 void expectOnTheirEdges(const Front& front, const SurfaceIndex& index) {

@@ -19,6 +19,8 @@ constexpr double bent = 0.03;        // of h: an edge farther off the geometry b
 constexpr double flat = 0.015;       // of h: one whose middle is so near bridges none: at a single bend it is half as far off at least
 constexpr double besideLine = 0.25;  // of h: bends nearer to a line are a part of it
 constexpr double steep = 0.7;        // cosine: edges along a line lead across no bend beside it
+constexpr double cornerReach = 2.5;  // of h: from the middle of an edge to a corner beyond it
+constexpr double mayCome = 1.5;      // of h: a node that is nearer to the corner wished for it gets there later
 constexpr double strays = 0.25;      // of a way along a line: how far off that it may have bent,
 constexpr double goesOn = 0.9;       // and the cosine that it must not turn by more
 constexpr int looks = 8;             // equal parts of an edge, between which a bend is looked for
@@ -41,7 +43,9 @@ struct Finder {
     double foldAt(std::size_t held, std::size_t other, const Vec3& way) const;
     bool isUnderEnd(const Vec3& bend, std::size_t p, std::size_t q) const;
     Between lineAcross(std::size_t p, std::size_t q) const;
+    EdgeCrossing edgeOf(std::int32_t edge) const;
     EdgeCrossing on(std::int32_t edge) const;
+    EdgeCrossing cornerBeyond(std::int32_t edge) const;
 };
 
 Between Finder::lineOn(std::size_t p, std::size_t q) const {
@@ -148,10 +152,34 @@ Between Finder::lineAcross(std::size_t p, std::size_t q) const {
     return between;
 }
 
-EdgeCrossing Finder::on(std::int32_t edge) const {
+EdgeCrossing Finder::edgeOf(std::int32_t edge) const {
     EdgeCrossing c;
     const auto he = front.mesh.halfedge_handle(FrontMesh::EdgeHandle(edge), 0);
     c.edge = edge, c.p = front.mesh.from_vertex_handle(he).idx(), c.q = front.mesh.to_vertex_handle(he).idx();
+    return c;
+}
+
+// A corner into which the wall does not reach, as the tip of a hollow, beside an edge of the face that closes it: with a vertex there
+// the face beyond the edge goes on to the corner, and the one that closed it is cut along the line that leads there.
+EdgeCrossing Finder::cornerBeyond(std::int32_t edge) const {
+    EdgeCrossing c = edgeOf(edge);
+    const auto p = static_cast<std::size_t>(c.p), q = static_cast<std::size_t>(c.q);
+    if (!marks.onLine[p] && !marks.onLine[q]) return c;
+    if ((band.outside[p] | band.outside[q]) != 0 || (isShared(p) && isShared(q))) return c;
+    const double h = std::max(band.h[p], band.h[q]);
+    const Vec3 middle = (x[p] + x[q]) * 0.5, along = x[q] - x[p];
+    const ClosestPoint corner = features.closestCorner(middle, cornerReach * h);
+    if (!corner || marks.takenCorners.contains(corner.triangle) || features.isCrowded(corner, h)) return c;
+    c.corner = corner.triangle, c.wall = corner.point, c.kind = SnapKind::corner, c.beside = true;
+    const double share = dot(c.wall - x[p], along) / norm2(along);
+    if (!(share > 0 && share < 1) || norm(c.wall - (x[p] + along * share)) < nearHeld * h) return c;
+    placeOnFront(band, x, c, std::clamp(share, nearEnd, 1 - nearEnd));
+    c.alive = isFree(index, c);
+    return c;
+}
+
+EdgeCrossing Finder::on(std::int32_t edge) const {
+    EdgeCrossing c = edgeOf(edge);
     const auto p = static_cast<std::size_t>(c.p), q = static_cast<std::size_t>(c.q);
     if ((band.outside[p] & band.outside[q]) != 0 || (isShared(p) && isShared(q))) return c;
     c.beside = marks.onLine[p] || marks.onLine[q];
@@ -201,7 +229,7 @@ EdgeCrossing Finder::on(std::int32_t edge) const {
 } // namespace
 
 WallMarks markWall(WallViews& views, const FeatureIndex& features, const Positions& x,
-                   const std::vector<Snap>& snaps) {
+                   const std::vector<Snap>& snaps, const std::vector<Snap>& wishes) {
     const Band& band = views.band();
     const SurfaceIndex& index = views.index();
     WallMarks marks;
@@ -226,6 +254,11 @@ WallMarks markWall(WallViews& views, const FeatureIndex& features, const Positio
             return;
         }
     });
+    const auto take = [&](const Snap& snap, std::size_t n, double within) {
+        if (snap.kind != SnapKind::corner || norm(snap.point - x[n]) > within * band.h[n]) return;
+        if (const ClosestPoint corner = features.closestCorner(snap.point, band.h[n])) marks.takenCorners.insert(corner.triangle);
+    };
+    for (std::size_t n = 0; n < band.walls; ++n) take(snaps[n], n, onLine), take(wishes[n], n, mayCome);
     return marks;
 }
 
@@ -233,7 +266,13 @@ std::vector<EdgeCrossing> findCrossings(const Front& front, const Band& band, co
                                         const Positions& x, const WallMarks& marks) {
     const Finder finder{front, band, index, features, x, marks};
     const RawVector<EdgeCrossing> found = collect<EdgeCrossing>(front.mesh.n_edges(), [&](std::size_t e, const auto& put) {
-        if (const EdgeCrossing crossing = finder.on(static_cast<std::int32_t>(e)); crossing.alive) put(crossing);
+        EdgeCrossing crossing = finder.on(static_cast<std::int32_t>(e));
+        if (!crossing.alive) {
+            crossing = finder.cornerBeyond(static_cast<std::int32_t>(e));
+            if (!crossing.alive) return;
+            crossing.alive = false;
+        }
+        put(crossing);
     }, 256);
     return {found.begin(), found.end()};
 }

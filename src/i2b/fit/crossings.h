@@ -3,18 +3,21 @@
 #pragma once
 #include "i2b/fit/between.h"
 #include "i2b/front/front.h"
+#include <set>
 
 namespace i2b {
 
-// Per wall node of the band.
 struct WallMarks {
+    // Per wall node of the band:
     std::vector<Foot> feet;             // what it sees
     std::vector<std::uint8_t> onLine;   // stands on a line that it is held to, or on a border between parts
     std::vector<Vec3> tangents;         // unit, of the line that it is held to; zero: none, or a corner
+    std::set<std::uint32_t> takenCorners; // of the feature index: a node stands there, or may come as it wishes
 };
 
+// wishes: of nodes that snaps do not hold, what they are to be held to later.
 WallMarks markWall(WallViews& views, const FeatureIndex& features, const Positions& x,
-                   const std::vector<Snap>& snaps);
+                   const std::vector<Snap>& snaps, const std::vector<Snap>& wishes);
 
 struct EdgeCrossing {
     std::int32_t edge = -1, p = -1, q = -1; // of the front; its vertices
@@ -25,10 +28,12 @@ struct EdgeCrossing {
     bool beside = false;                    // an end of the edge stands on another line
     bool onRim = false;                     // of a sheet
     bool bend = false;                      // away from lines
+    std::int64_t corner = -1;               // of the feature index: no crossing, but the place on the wall is this corner beyond the edge
     bool alive = false;                     // false: there is none
 };
 
-// Those of the front's edges, in order. x: positions of the band's nodes.
+// Those of the front's edges, in order, and corners beyond an edge, which are not alive: one may have several. x: positions of the
+// band's nodes.
 std::vector<EdgeCrossing> findCrossings(const Front& front, const Band& band, const SurfaceIndex& index, const FeatureIndex& features,
                                         const Positions& x, const WallMarks& marks);
 

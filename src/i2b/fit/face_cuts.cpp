@@ -1,6 +1,7 @@
 #include "i2b/fit/face_cuts.h"
 #include <algorithm>
 #include <array>
+#include <set>
 
 namespace i2b {
 namespace {
@@ -17,13 +18,13 @@ constexpr std::size_t mostVertices = 8; // of a front face
 
 } // namespace
 
-CutRing FaceCutter::ringOf(std::size_t face) const {
+CutRing FaceCutter::ringOf(std::size_t face, std::int32_t also) const {
     CutRing ring;
     for (auto he : front_.mesh.fh_range(FrontMesh::FaceHandle(static_cast<int>(face)))) {
         const std::int32_t v = front_.mesh.from_vertex_handle(he).idx();
         ring.push_back({v, -1, marks_.onLine[std::size_t(v)] != 0, false});
         const std::int32_t c = crossingOf_[std::size_t(front_.mesh.edge_handle(he).idx())];
-        if (c >= 0 && crossings_[std::size_t(c)].alive) ring.push_back({-1, c, true, false});
+        if (c >= 0 && (c == also || crossings_[std::size_t(c)].alive)) ring.push_back({-1, c, true, false});
     }
     return ring;
 }
@@ -65,13 +66,29 @@ Foot FaceCutter::footUnder(const CutRing& ring, std::size_t from, std::size_t to
     return footAt(index_, wall / n, front / n, hAt(ring[from]));
 }
 
+bool FaceCutter::isAlongLine(const CutPlace& from, const CutPlace& to) const {
+    const Vec3 &a = wallAt(from), &b = wallAt(to);
+    const FeatureIndex::Line line = features_.closestLine((a + b) * 0.5, onLine * hAt(from));
+    return line.found && std::abs(dot(line.tangent, normalized(b - a))) >= alongLine;
+}
+
 // Nodes that all stand on lines themselves do not say what they part: what lies under the two pieces does.
 bool FaceCutter::liesOnLine(const CutRing& ring, std::size_t from, std::size_t to) const {
-    const Vec3 &a = wallAt(ring[from]), &b = wallAt(ring[to]);
-    const FeatureIndex::Line line = features_.closestLine((a + b) * 0.5, onLine * hAt(ring[from]));
-    if (!line.found || std::abs(dot(line.tangent, normalized(b - a))) < alongLine) return false;
+    if (!isAlongLine(ring[from], ring[to])) return false;
     const Foot one = footUnder(ring, from, to), other = footUnder(ring, to, from);
     return one.found && other.found && (turns(one, other) || one.part != other.part);
+}
+
+std::size_t FaceCutter::linesFrom(std::int32_t crossing, const std::vector<CutRing>& pieces) const {
+    std::set<std::pair<std::int32_t, std::int32_t>> ends;
+    for (const CutRing& piece : pieces) {
+        for (std::size_t i = 0, n = piece.size(); i < n; ++i) {
+            if (piece[i].crossing != crossing) continue;
+            for (const CutPlace& end : {piece[(i + 1) % n], piece[(i + n - 1) % n]})
+                if (isAlongLine(piece[i], end)) ends.insert({end.vertex, end.crossing});
+        }
+    }
+    return ends.size();
 }
 
 // The cut with most new ends, the shortest of these.
@@ -179,8 +196,8 @@ void FaceCutter::divide(const CutRing& ring, FaceCuts& cuts) const {
     }
 }
 
-FaceCuts FaceCutter::cutsOf(std::size_t face) const {
-    const CutRing ring = ringOf(face);
+FaceCuts FaceCutter::cutsOf(std::size_t face, std::int32_t also) const {
+    const CutRing ring = ringOf(face, also);
     FaceCuts cuts;
     divide(ring, cuts);
     const bool touched = cuts.pieces.size() > 1 || std::any_of(ring.begin(), ring.end(), [](const CutPlace& p) { return p.vertex < 0; });

@@ -27,20 +27,24 @@ class FaceCutter {
                const WallMarks& marks, const std::vector<EdgeCrossing>& crossings, const std::vector<std::int32_t>& crossingOf)
         : front_(front), band_(band), index_(index), features_(features), x_(x), marks_(marks), crossings_(crossings), crossingOf_(crossingOf) {}
 
-    FaceCuts cutsOf(std::size_t face) const;
+    // also: a crossing that counts though it is not alive.
+    FaceCuts cutsOf(std::size_t face, std::int32_t also = -1) const;
     // The worst scaled Jacobian of the prisms' corners on pieces of a face, if a crossing were where moved, of the same edge, is; -1: none can be.
     double worstCorner(const std::vector<CutRing>& pieces, const EdgeCrossing& moved) const;
+    // Of the edges from a crossing in these pieces, how many run along a line.
+    std::size_t linesFrom(std::int32_t crossing, const std::vector<CutRing>& pieces) const;
     // Does no line ask for it?
     bool isOptional(const CutPlace& p) const;
     // For corners of a piece that have too little height under the front.
     void wishRoom(const CutRing& piece, std::vector<RoomWish>& wishes) const;
 
   private:
-    CutRing ringOf(std::size_t face) const;
+    CutRing ringOf(std::size_t face, std::int32_t also) const;
     bool runsAlong(const CutPlace& from, const CutPlace& to) const;
     void divide(const CutRing& ring, FaceCuts& cuts) const;
     bool bestCut(const CutRing& ring, std::size_t& from, std::size_t& to) const;
     bool differ(const CutRing& ring, std::size_t from, std::size_t to) const;
+    bool isAlongLine(const CutPlace& from, const CutPlace& to) const;
     bool liesOnLine(const CutRing& ring, std::size_t from, std::size_t to) const;
     Foot footUnder(const CutRing& ring, std::size_t from, std::size_t to) const;
     bool isOnOneEdge(const CutRing& ring) const;

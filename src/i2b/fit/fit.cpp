@@ -152,7 +152,7 @@ void seekOnce(Front& front, WallViews& views, const FeatureIndex& features, Posi
     summary.wishes = snaps;
     snapToFeatures(views, front, features, x, summary.wishes);
     snapFolds(band, front, views.index(), features, x, summary.wishes);
-    summary.inserted = insertVertices(front, views, features, x, snaps);
+    summary.inserted = insertVertices(front, views, features, x, snaps, summary.wishes);
     summary.wishes.resize(snaps.size());
     parallelFor(band.walls, [&](std::size_t n) {
         if (summary.wishes[n].kind != SnapKind::none || hasLineBeside(front, snaps, n)) return;

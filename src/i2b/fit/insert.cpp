@@ -6,6 +6,7 @@
 #include "i2b/front/replace_faces.h"
 #include <algorithm>
 #include <array>
+#include <map>
 
 namespace i2b {
 namespace {
@@ -14,18 +15,21 @@ constexpr int placesTried = 8; // equal parts of an edge of the front, at whose 
 constexpr std::array slides{0.0, 0.1, -0.1, 0.2, -0.2, 0.3, -0.3, 0.4, -0.4}; // of h: so far along its line,
 constexpr double goodCorner = 0.15; // scaled Jacobian: no farther than to have such corners,
 constexpr int placingRounds = 2;    // and again after those beside it have
+constexpr std::size_t leastLines = 3; // that a corner beyond an edge must be at the end of
 
 class Inserter {
   public:
     Inserter(Front& front, WallViews& views, const FeatureIndex& features, Positions& x,
-             std::vector<Snap>& snaps)
-        : front_(front), band_(views.band()), index_(views.index()), features_(features), x_(x), snaps_(snaps), marks_(markWall(views, features, x, snaps)),
+             std::vector<Snap>& snaps, const std::vector<Snap>& wishes)
+        : front_(front), band_(views.band()), index_(views.index()), features_(features), x_(x), snaps_(snaps), marks_(markWall(views, features, x, snaps, wishes)),
           cutter_(front_, band_, index_, features_, x_, marks_, crossings_, crossingOf_) {}
     std::size_t run();
 
   private:
     bool isOfWholeFace(std::int32_t edge) const;
     void lookForCrossings();
+    void takeCorners();
+    double gainOf(std::int32_t crossing) const;
     std::vector<RoomWish> roomWanted(const std::vector<FaceCuts>& cuts) const;
     std::vector<std::uint8_t> stepAsideWhereRefused(const std::vector<FaceCuts>& cuts);
     std::array<std::int32_t, 2> placesBeside(std::int32_t edge) const;
@@ -217,8 +221,37 @@ void Inserter::lookForCrossings() {
     }, 2048);
 }
 
+// What a corner beyond an edge brings: the worst scaled Jacobian of the cells beside the edge; 0: too few lines lead to it, or it may not be.
+double Inserter::gainOf(std::int32_t crossing) const {
+    const EdgeCrossing& c = crossings_[std::size_t(crossing)];
+    std::vector<CutRing> pieces;
+    for (const std::int32_t place : placesBeside(c.edge)) {
+        if (place < 0) return 0;
+        const FaceCuts cuts = cutter_.cutsOf(static_cast<std::size_t>(faces_[std::size_t(place)]), crossing);
+        if (!cuts.valid) return 0;
+        pieces.insert(pieces.end(), cuts.pieces.begin(), cuts.pieces.end());
+    }
+    return cutter_.linesFrom(crossing, pieces) >= leastLines ? cutter_.worstCorner(pieces, c) : 0;
+}
+
+// Each corner that the wall does not reach becomes one of the places beyond edges that were found for it: the one with the best cells.
+void Inserter::takeCorners() {
+    std::vector<double> gain(crossings_.size(), 0);
+    parallelFor(crossings_.size(), [&](std::size_t i) {
+        if (crossings_[i].corner >= 0) gain[i] = gainOf(static_cast<std::int32_t>(i));
+    }, 16);
+    std::map<std::int64_t, std::size_t> best; // by corner
+    for (std::size_t i = 0; i < crossings_.size(); ++i) {
+        if (gain[i] < goodCorner) continue;
+        const auto [at, isNew] = best.insert({crossings_[i].corner, i});
+        if (!isNew && gain[i] > gain[at->second]) at->second = i;
+    }
+    for (const auto& [corner, i] : best) crossings_[i].alive = true;
+}
+
 std::size_t Inserter::run() {
     lookForCrossings();
+    takeCorners();
     std::vector<FaceCuts> cuts;
     const auto cutAll = [&](const auto& isWanted) {
         cuts.resize(faces_.size());
@@ -249,8 +282,8 @@ std::size_t Inserter::run() {
 } // namespace
 
 std::size_t insertVertices(Front& front, WallViews& views, const FeatureIndex& features, Positions& x,
-                           std::vector<Snap>& snaps) {
-    return Inserter(front, views, features, x, snaps).run();
+                           std::vector<Snap>& snaps, const std::vector<Snap>& wishes) {
+    return Inserter(front, views, features, x, snaps, wishes).run();
 }
 
 } // namespace i2b
