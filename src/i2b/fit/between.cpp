@@ -18,6 +18,7 @@ constexpr double atMeeting = 0.1;   // of h: so near to where two planes meet a 
 constexpr double offPlane = 0.1;    // sine: a line that is farther off the plane of a foot is that of another surface
 constexpr double rimReach = 0.6;    // of h: so far from the feet the rim of a thin sheet is looked for,
 const double foldedBack = std::cos(120 * degree); // where they stand on its two sides
+constexpr double hollowReach = 2.2; // of h: and so far the line at the end of a hollow
 constexpr double hiddenBy = 0.05;   // of h: so far behind what is seen a line is hidden
 constexpr double flush = 0.15;      // of h: the way over a higher step,
 constexpr double halfway = 0.1;     // of h: where it is so far off the geometry, changes parts halfway between its sides, not at a border
@@ -123,9 +124,12 @@ bool turns(const Foot& a, const Foot& b) {
     return a.found && b.found && c < smallestTurn;
 }
 
-Between lineBetween(const SurfaceIndex& index, const FeatureIndex& features, const Foot& a, const Foot& b, const Vec3& fluid, double h) {
-    double radius = 0.8 * norm(a.point - b.point);
-    const bool isRim = dot(a.normal, b.normal) < foldedBack;
+Between lineBetween(const SurfaceIndex& index, const FeatureIndex& features, const Foot& a, const Foot& b, const Vec3& fluid, double h, bool intoHollows) {
+    const double c = dot(a.normal, b.normal), apart = norm(a.point - b.point);
+    const bool isRim = c < foldedBack, isHollow = dot(b.point - a.point, a.normal) > 0;
+    double radius = 0.8 * apart;
+    // Of two planes at an acute angle, halfway between feet as far from the line, which is farther than the feet are apart.
+    if (intoHollows && isHollow && !isRim) radius = std::max(radius, std::min(1.2 * 0.5 * apart * std::sqrt((1 - c) / (1 + c)), hollowReach * h));
     if (isRim) radius = std::max(radius, rimReach * h);
     const FeatureIndex::Line line = features.closestLine((a.point + b.point) * 0.5, radius);
     if (line.found && isSeen(index, fluid, line.point, h)) return {line, SnapKind::line, isRim || (liesOn(a, line.point, h) && liesOn(b, line.point, h))};

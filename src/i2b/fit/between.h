@@ -30,8 +30,9 @@ struct Between {
 };
 
 // The feature between two feet that turn: a sharp edge of the soup, or else the line in which their tangent planes
-// meet, if the geometry confirms it. h: m, size of the cells around; fluid: a place in the fluid near by.
-Between lineBetween(const SurfaceIndex& index, const FeatureIndex& features, const Foot& a, const Foot& b, const Vec3& fluid, double h);
+// meet, if the geometry confirms it. h: m, size of the cells around; fluid: a place in the fluid near by. intoHollows: also where the
+// line is farther from the feet than these are apart.
+Between lineBetween(const SurfaceIndex& index, const FeatureIndex& features, const Foot& a, const Foot& b, const Vec3& fluid, double h, bool intoHollows = false);
 
 // The line in which the tangent planes of two feet meet, if the geometry confirms it, or the sharp edge that is there.
 Between meetingOf(const SurfaceIndex& index, const FeatureIndex& features, const Foot& a, const Foot& b, const Vec3& fluid, double h);

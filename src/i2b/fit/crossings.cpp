@@ -51,7 +51,7 @@ struct Finder {
 Between Finder::lineOn(std::size_t p, std::size_t q) const {
     const Foot &a = marks.feet[p], &b = marks.feet[q];
     const double h = std::max(band.h[p], band.h[q]);
-    if (turns(a, b)) return lineBetween(index, features, a, b, frontOf(p), h);
+    if (turns(a, b)) return lineBetween(index, features, a, b, frontOf(p), h, true);
     if (a.found && b.found && a.part != b.part) return borderBetween(index, a, b, frontOf(p), h);
     return {};
 }
