@@ -1,5 +1,5 @@
 // Proves: edges between nodes that stand on lines are divided at a line that they pass over, on that line. Front nodes make room
-// for a vertex on an edge as for one of their own, without spoiling a corner.
+// for a vertex on an edge as for one of their own, without spoiling a corner. Places of vertices keep to line and edge when they are moved.
 #include "i2b/fit/corner.h"
 #include "i2b/fit/crossings.h"
 #include "i2b/fit/front_room.h"
@@ -59,6 +59,35 @@ TEST(Crossings, OfEdgesBetweenLinesLieOnTheLineThatTheyPassOver) {
         EXPECT_GT(norm(run.x[p] + (run.x[q] - run.x[p]) * c.t - c.wall), 0.03 * stagesSize); // passes over
     }
     EXPECT_GT(between, 3);
+}
+
+// Moved on the front and along its line, a crossing's place on the wall stays on a sharp edge, and that on the front on its edge; under the
+// wall's place no other share of the edge is nearer to it.
+TEST(Crossings, StayOnTheirLineAndTheirEdgeWhenMoved) {
+    Unsnapped run(ridged());
+    const WallMarks marks = markWall(run.views, run.features, run.x, run.snaps, run.snaps);
+    int slid = 0;
+    for (const EdgeCrossing& c : findCrossings(run.front, run.band, *run.painted.index, run.features, run.x, marks)) {
+        if (c.kind != SnapKind::line) continue;
+        const auto onEdge = [&](double t) {
+            const auto frontOf = [&](std::int32_t n) { return run.x[static_cast<std::size_t>(run.band.frontNode[static_cast<std::size_t>(n)])]; };
+            return frontOf(c.p) + (frontOf(c.q) - frontOf(c.p)) * t;
+        };
+        const double under = shareUnder(run.band, run.x, c);
+        for (int i = 12; i <= 88; ++i) EXPECT_LE(norm(onEdge(under) - c.wall), norm(onEdge(0.01 * i) - c.wall) + 1e-12);
+        EdgeCrossing placed = c;
+        placeOnFront(run.band, run.x, placed, 0.4);
+        EXPECT_LT(norm(placed.front - (onEdge(0.4) + (c.wall - onEdge(0.4)) * Front::Inserted::lift)), 1e-14);
+        for (const double way : {0.2 * stagesSize, -0.3 * stagesSize}) {
+            EdgeCrossing moved = c;
+            if (!slideAlong(*run.painted.index, run.features, moved, way)) continue; // past the line's end
+            ++slid;
+            EXPECT_LT(norm(run.features.closestLine(moved.wall, stagesSize).point - moved.wall), 1e-12);
+            EXPECT_NEAR(norm(moved.wall - c.wall), std::abs(way), 0.25 * std::abs(way));
+            EXPECT_GT(dot(moved.wall - c.wall, c.tangent) * way, 0);
+        }
+    }
+    EXPECT_GT(slid, 20);
 }
 
 // Wishes for places in the middle of edges, in directions at random over which the front stands too low: what moves comes higher, by at

@@ -1,9 +1,11 @@
 // Proves: vertices are put into those wall edges only that cross a border or an edge, they lie on it, and afterwards each
-// face of the front lies on one side; with the fit's own snaps and without any; the same on any number of threads.
+// face of the front lies on one side; with the fit's own snaps and without any; hollows get vertices at their tips; the same on any
+// number of threads.
 #include "i2b/fit/between.h"
 #include "i2b/fit/insert.h"
 #include "fit/unsnapped.h"
 #include "i2b/quality/quality_report.h"
+#include "pipeline/shape_run.h"
 #include <gtest/gtest.h>
 #include <functional>
 #include <map>
@@ -176,6 +178,32 @@ TEST(Insert, LeavesFewFacesRoundAnEdge) {
     std::vector<std::uint8_t> onLine(run.front.front.size(), 0);
     for (std::size_t v = 0; v < run.fitted.snaps.size(); ++v) onLine[v] = run.fitted.snaps[v].kind != SnapKind::none;
     EXPECT_LT(10 * straddling(run, onLine), straddling(without, std::vector<std::uint8_t>(without.front.front.size(), 0)));
+}
+
+// In a tetrahedron no front comes near the tips: those that a vertex is put at stand there alone, and edges lead from there along three lines.
+TEST(Insert, PutsVerticesAtTheTipsOfHollows) {
+    const auto shape = std::ranges::find(shapes(), std::string_view("tetrahedron"), &Shape::name);
+    Options options = stagesOptions();
+    options.domain.flow = Flow::internal;
+    std::size_t tips = 0;
+    for (const unsigned pose : {0u, 2u, 8u}) {
+        const ToMesh run(posed(*shape, stagesSize, pose).soup, options);
+        EXPECT_EQ(run.front.validate(), "");
+        for (std::size_t v = run.front.firstInserted(); v < run.front.front.size(); ++v) {
+            if (run.fitted.snaps[v].kind != SnapKind::corner) continue;
+            ++tips;
+            const Vec3 tip = wallPoint(run.front, v);
+            EXPECT_LT(run.features.closestCorner(tip, stagesSize).distance, 1e-9);
+            for (std::size_t other = 0; other < run.front.firstInserted(); ++other) ASSERT_GT(norm(wallPoint(run.front, other) - tip), 0.2 * stagesSize);
+            int lines = 0;
+            for (const auto end : run.front.mesh.vv_range(FrontMesh::VertexHandle(static_cast<int>(v)))) {
+                const Vec3 middle = (wallPoint(run.front, static_cast<std::size_t>(end.idx())) + tip) * 0.5;
+                lines += run.features.closestLine(middle, 0.1 * stagesSize).found;
+            }
+            EXPECT_GE(lines, 3);
+        }
+    }
+    EXPECT_GE(tips, 3u);
 }
 
 TEST(Insert, SameOnAnyNumberOfThreads) {
