@@ -28,7 +28,7 @@ const Bar bars[] = {
     {"cone", Side::outside, 0.95, 0.97, 0.02},
     {"cone", Side::inside, 0.95, 0.98, 0.02},
     {"step", Side::outside, 0.96, 0.98, 0.02},
-    {"step", Side::inside, 0.97, 0.97, 0.02},
+    {"step", Side::inside, 0.96, 0.97, 0.02},
     {"crossed-boxes", Side::outside, 0.95, 0.97, 0.03},
     {"pipe-tee", Side::outside, 0.97, 0.97, 0.02},
     {"wedge-20", Side::outside, 0.96, 0.97, 0.02},
