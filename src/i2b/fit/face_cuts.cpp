@@ -12,6 +12,7 @@ constexpr double onGeometry = 0.03;  // of h: so near to the geometry the middle
 constexpr double nearer = 0.8;       // share of its distance that the pieces of a face may keep where bends are cut
 const double alongLine = std::cos(20 * 3.14159265358979323846 / 180);
 constexpr double leastCorner = 0.06; // scaled Jacobian that a piece of a prism must have,
+constexpr double leastEver = 0.03;   // or, where the whole prism's are worse, as bad as these, but no worse than this,
 constexpr double leastGood = 0.15;   // and where no line asks for it
 constexpr double straight = -0.97;   // cosine: the angle at a vertex that is no corner
 constexpr std::size_t mostVertices = 8; // of a front face
@@ -205,7 +206,7 @@ FaceCuts FaceCutter::cutsOf(std::size_t face, std::int32_t also) const {
     divide(ring, cuts);
     const bool touched = cuts.pieces.size() > 1 || std::any_of(ring.begin(), ring.end(), [](const CutPlace& p) { return p.vertex < 0; });
     const bool mustBeGood = std::any_of(ring.begin(), ring.end(), [&](const CutPlace& p) { return isOptional(p); });
-    const double worst = mustBeGood ? leastGood : leastCorner;
+    const double worst = mustBeGood ? leastGood : std::clamp(touched ? worstCorner(withoutCrossings(ring)) : 1.0, leastEver, leastCorner);
     cuts.valid = !touched || std::all_of(cuts.pieces.begin(), cuts.pieces.end(), [&](const CutRing& piece) { return worstCorner(piece) >= worst; });
     if (cuts.valid && cuts.pieces.size() > 1 && std::any_of(ring.begin(), ring.end(), [&](const CutPlace& p) { return isOnBend(p); })) cuts.valid = isNearer(ring, cuts.pieces);
     return cuts;
