@@ -254,11 +254,14 @@ WallMarks markWall(WallViews& views, const FeatureIndex& features, const Positio
             return;
         }
     });
-    const auto take = [&](const Snap& snap, std::size_t n, double within) {
-        if (snap.kind != SnapKind::corner || norm(snap.point - x[n]) > within * band.h[n]) return;
-        if (const ClosestPoint corner = features.closestCorner(snap.point, band.h[n])) marks.takenCorners.insert(corner.triangle);
-    };
-    for (std::size_t n = 0; n < band.walls; ++n) take(snaps[n], n, onLine), take(wishes[n], n, mayCome);
+    const RawVector<std::uint32_t> taken = collect<std::uint32_t>(band.walls, [&](std::size_t n, const auto& put) {
+        const auto take = [&](const Snap& snap, double within) {
+            if (snap.kind != SnapKind::corner || norm(snap.point - x[n]) > within * band.h[n]) return;
+            if (const ClosestPoint corner = features.closestCorner(snap.point, band.h[n])) put(corner.triangle);
+        };
+        take(snaps[n], onLine), take(wishes[n], mayCome);
+    }, 4096);
+    marks.takenCorners.insert(taken.begin(), taken.end());
     return marks;
 }
 
