@@ -2,40 +2,14 @@
 #include "i2b/core/error.h"
 #include "i2b/geometry/write_stl.h"
 #include "i2b/program/generate.h"
+#include "pipeline/pose.h"
 #include <algorithm>
 #include <filesystem>
-#include <random>
-#include <string_view>
 #include <unistd.h>
 #include <utility>
 
 namespace i2b::test {
 namespace {
-
-class Pose {
-  public:
-    Pose(const Shape& shape, double h, unsigned seed) {
-        for (const char c : std::string_view(shape.name)) seed = seed * 31u + static_cast<unsigned char>(c);
-        std::mt19937 random(seed);
-        const auto real = [&] { return static_cast<double>(random()) / 2147483648.0 - 1; }; // the standard's
-        double length = 0;                                          // distributions differ between libraries
-        while (length < 0.1 || length > 1) { // even over all turns: a quaternion even over the 3-sphere
-            for (double& v : q_) v = real();
-            length = std::sqrt(q_[0] * q_[0] + q_[1] * q_[1] + q_[2] * q_[2] + q_[3] * q_[3]);
-        }
-        for (double& v : q_) v /= length;
-        const double x = real(), y = real(), z = real();
-        shift_ = Vec3{x, y, z} * (h / 2);
-    }
-    Vec3 operator()(const Vec3& p) const {
-        const Vec3 v{q_[1], q_[2], q_[3]};
-        return p + 2 * cross(v, cross(v, p) + q_[0] * p) + shift_;
-    }
-
-  private:
-    std::array<double, 4> q_{};
-    Vec3 shift_;
-};
 
 Options optionsOf(const ShapeGeometry& g, Side side, double h) {
     Options o;
@@ -98,7 +72,7 @@ std::string faultOf(const PolyMesh& mesh, const QualityReport& q) {
 } // namespace
 
 ShapeGeometry posed(const Shape& shape, double h, unsigned seed) {
-    const Pose pose(shape, h, seed);
+    const Pose pose(shape.name, h, seed);
     ShapeGeometry g = shape.make(h);
     for (Vec3& p : g.soup.points) p = pose(p);
     for (auto& line : g.lines) line = {pose(line[0]), pose(line[1])};

@@ -70,7 +70,8 @@ TEST(ReportWrite, HasTheContractsKeys) {
     EXPECT_THAT(keys(json["quality"]["limits"]["minDeterminant"]), testing::ElementsAre("limit", "asked", "faces", "cells", "worst"));
     EXPECT_THAT(keys(json["fit"]), testing::ElementsAre("wall_nodes_on_geometry_fraction",
                                                         "mean_distance_in_h", "max_distance_in_h",
-                                                        "feature_capture_fraction", "tilted_face_fraction",
+                                                        "feature_capture_fraction", "faint_capture_fraction",
+                                                        "faint_samples", "tilted_face_fraction",
                                                         "tilted_45_face_fraction",
                                                         "cut_short", "lost_edges", "off_geometry"));
     EXPECT_EQ(json["fit"]["lost_edges"].dump(),

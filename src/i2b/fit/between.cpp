@@ -24,6 +24,11 @@ constexpr double flush = 0.15;      // of h: the way over a higher step,
 constexpr double halfway = 0.1;     // of h: where it is so far off the geometry, changes parts halfway between its sides, not at a border
 constexpr double aside = 0.04;      // of h: so far off the way a line is over it,
 constexpr double alongWay = 0.7;    // cosine: if it does not run along it
+constexpr double offFaint = 0.15;   // of h: so far off the way a faint line may be,
+constexpr double overGeometry = 0.05; // and so far off the geometry,
+constexpr double faintApart = 0.5;  // if no other line comes so near to its place
+constexpr double faintAside = 0.1;  // at least so far beside it
+constexpr double alongFaint = 0.95; // cosine: a way that runs along a faint line leads over none
 
 // The place on the geometry for one where two planes meet: of a rounded edge the middle. Beside a crack both planes end as far
 // away: all along it the rim of the same one, or the mesh would change sides from node to node. Normals are compared without their
@@ -169,6 +174,21 @@ Between lineOver(const SurfaceIndex& index, const FeatureIndex& features, const 
     const double t = nearestOn(line, a, b, place);
     const Vec3 way = a + (b - a) * t;
     if (!(t > 0 && t < 1) || norm(way - place) < aside * h || index.closest(way, aside * h) || !isSeen(index, fluid, place, h)) return {};
+    return {line, SnapKind::line};
+}
+
+Between faintBetween(const SurfaceIndex& index, const FeatureIndex& features, const Vec3& a, const Vec3& b, const Vec3& fluid, double h) {
+    if (!features.hasFaint()) return {};
+    const double length = norm(b - a);
+    FeatureIndex::Line line = features.closestFaint((a + b) * 0.5, 0.5 * length + offFaint * h);
+    for (int round = 0; line.found && round < 2; ++round) { // lines turn
+        Vec3 place;
+        const double t = nearestOn(line, a, b, place);
+        if (std::abs(dot(line.tangent, b - a)) > alongFaint * length || !(t > 0 && t < 1)) return {};
+        line = features.closestFaint(a + (b - a) * t, offFaint * h);
+    }
+    if (!line.found || !index.closest(line.point, overGeometry * h) || features.hasOtherBeside(line, faintApart * h, faintAside * h)) return {};
+    if (!isSeen(index, fluid, line.point, h)) return {};
     return {line, SnapKind::line};
 }
 

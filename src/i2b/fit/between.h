@@ -47,6 +47,9 @@ Between lineOver(const SurfaceIndex& index, const FeatureIndex& features, const 
 // Where a line comes nearest to a segment: the share of the way from a to b, unlimited, and the place on the line.
 double nearestOn(const FeatureIndex::Line& line, const Vec3& a, const Vec3& b, Vec3& place);
 
+// The faint line (feature_index.h) that the way from one place on the wall to another leads over, where no other line runs near by.
+Between faintBetween(const SurfaceIndex& index, const FeatureIndex& features, const Vec3& a, const Vec3& b, const Vec3& fluid, double h);
+
 // The border between two parts that lie flush, where it is seen from a place in the fluid; none where they lie upon each other.
 Between borderBetween(const SurfaceIndex& index, const Foot& a, const Foot& b, const Vec3& fluid, double h);
 

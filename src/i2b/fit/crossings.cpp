@@ -52,6 +52,7 @@ Between Finder::lineOn(std::size_t p, std::size_t q) const {
     const Foot &a = marks.feet[p], &b = marks.feet[q];
     const double h = std::max(band.h[p], band.h[q]);
     if (turns(a, b)) return lineBetween(index, features, a, b, frontOf(p), h, true);
+    if (const Between faint = faintBetween(index, features, x[p], x[q], frontOf(p), h); faint.line.found) return faint;
     if (a.found && b.found && a.part != b.part) return borderBetween(index, a, b, frontOf(p), h);
     return {};
 }
@@ -148,7 +149,10 @@ Between Finder::lineAcross(std::size_t p, std::size_t q) const {
     Between between;
     if (marks.onLine[p]) between = lineBeside(p, q);
     if (marks.onLine[q] && !between.line.found) between = lineBeside(q, p);
-    if (!between.line.found) between = lineOver(index, features, x[p], x[q], (frontOf(p) + frontOf(q)) * 0.5, std::max(band.h[p], band.h[q]));
+    const Vec3 fluid = (frontOf(p) + frontOf(q)) * 0.5;
+    const double h = std::max(band.h[p], band.h[q]);
+    if (!between.line.found) between = lineOver(index, features, x[p], x[q], fluid, h);
+    if (!between.line.found) between = faintBetween(index, features, x[p], x[q], fluid, h);
     return between;
 }
 

@@ -72,15 +72,18 @@ Foot FaceCutter::footUnder(const CutRing& ring, std::size_t from, std::size_t to
     return footAt(index_, wall / n, front / n, hAt(ring[from]));
 }
 
-bool FaceCutter::isAlongLine(const CutPlace& from, const CutPlace& to) const {
+// The line that a cut lies on.
+FeatureIndex::Line FaceCutter::lineAlong(const CutPlace& from, const CutPlace& to) const {
     const Vec3 &a = wallAt(from), &b = wallAt(to);
     const FeatureIndex::Line line = features_.closestLine((a + b) * 0.5, onLine * hAt(from));
-    return line.found && std::abs(dot(line.tangent, normalized(b - a))) >= alongLine;
+    return line.found && std::abs(dot(line.tangent, normalized(b - a))) >= alongLine ? line : FeatureIndex::Line{};
 }
 
 // Nodes that all stand on lines themselves do not say what they part: what lies under the two pieces does.
 bool FaceCutter::liesOnLine(const CutRing& ring, std::size_t from, std::size_t to) const {
-    if (!isAlongLine(ring[from], ring[to])) return false;
+    const FeatureIndex::Line line = lineAlong(ring[from], ring[to]);
+    if (!line.found) return false;
+    if (line.isFaint) return true;
     const Foot one = footUnder(ring, from, to), other = footUnder(ring, to, from);
     return one.found && other.found && (turns(one, other) || one.part != other.part);
 }
@@ -91,7 +94,7 @@ std::size_t FaceCutter::linesFrom(std::int32_t crossing, const std::vector<CutRi
         for (std::size_t i = 0, n = piece.size(); i < n; ++i) {
             if (piece[i].crossing != crossing) continue;
             for (const CutPlace& end : {piece[(i + 1) % n], piece[(i + n - 1) % n]})
-                if (isAlongLine(piece[i], end)) ends.insert({end.vertex, end.crossing});
+                if (lineAlong(piece[i], end).found) ends.insert({end.vertex, end.crossing});
         }
     }
     return ends.size();

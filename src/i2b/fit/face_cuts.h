@@ -44,7 +44,7 @@ class FaceCutter {
     void divide(const CutRing& ring, FaceCuts& cuts) const;
     bool bestCut(const CutRing& ring, std::size_t& from, std::size_t& to) const;
     bool differ(const CutRing& ring, std::size_t from, std::size_t to) const;
-    bool isAlongLine(const CutPlace& from, const CutPlace& to) const;
+    FeatureIndex::Line lineAlong(const CutPlace& from, const CutPlace& to) const;
     bool liesOnLine(const CutRing& ring, std::size_t from, std::size_t to) const;
     Foot footUnder(const CutRing& ring, std::size_t from, std::size_t to) const;
     bool isOnOneEdge(const CutRing& ring) const;

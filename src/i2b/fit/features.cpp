@@ -123,6 +123,7 @@ struct EdgeLook {
         if (heldA) return {besideLine(band, index, features, x, feet[b], snaps[a], p, q)};
         if (heldB) return {besideLine(band, index, features, x, feet[a], snaps[b], q, p)};
         if (turns(feet[a], feet[b])) return {acrossTurn(p, q)};
+        if (const Between faint = faintBetween(index, features, x[a], x[b], fluidAt(p), hOf(p, q)); faint.line.found) return {crossingOf(band, index, features, x, faint, p, q)};
         return feet[a].found && feet[b].found ? betweenAlike(p, q) : std::array<Crossing, 2>{};
     }
 
@@ -176,7 +177,9 @@ std::size_t snapCorners(const Band& band, const SurfaceIndex& index, const Featu
             if (m >= band.walls) continue;
             if (std::all_of(sides.begin(), sides.begin() + std::ptrdiff_t(found), [&](const Foot& f) { return turns(f, feet[m]); })) sides[found++] = feet[m];
         }
-        if (found == 1) return;
+        const bool isFaint = features.isFaint(c); // there the wall need not bend
+        if (isFaint && features.isCrowded(c, band.h[n])) return;
+        if (found == 1 && !isFaint) return;
         const Vec3 out = normalized(sides[0].normal + sides[1].normal + sides[2].normal);
         const auto isBefore = [&](const Foot& f) { return dot(f.point - c.point, out) > 0; };
         if (c.distance > cornerReach * band.h[n] && (found < 3 || !std::all_of(sides.begin(), sides.end(), isBefore) || features.isCrowded(c, band.h[n]))) return;
@@ -199,53 +202,6 @@ std::size_t snapCorners(const Band& band, const SurfaceIndex& index, const Featu
 }
 
 } // namespace
-
-FeatureIndex::FeatureIndex(const FeatureGraph& graph) {
-    lines_.parts = corners_.parts = {Part{"features", "", 0}};
-    lines_.points = corners_.points = graph.points;
-    for (const FeatureEdge& e : graph.edges) {
-        if (!(e.kinds & lineKinds)) continue;
-        lines_.triangles.push_back({e.a, e.b, e.b});
-        lines_.partOf.push_back(0);
-        isRim_.push_back((e.kinds & bitOf(EdgeKind::rim)) != 0);
-    }
-    for (std::uint32_t c : graph.corners) {
-        corners_.triangles.push_back({c, c, c});
-        corners_.partOf.push_back(0);
-    }
-    if (!lines_.triangles.empty()) lineIndex_ = std::make_unique<SurfaceIndex>(lines_);
-    if (!corners_.triangles.empty()) cornerIndex_ = std::make_unique<SurfaceIndex>(corners_);
-}
-
-FeatureIndex::Line FeatureIndex::closestLine(const Vec3& q, double radius) const {
-    Line line;
-    if (!lineIndex_) return line;
-    const ClosestPoint c = lineIndex_->closest(q, radius);
-    if (!c) return line;
-    const auto& t = lines_.triangles[c.triangle];
-    line.point = c.point;
-    line.tangent = normalized(lines_.points[t[1]] - lines_.points[t[0]]);
-    line.found = line.tangent != Vec3{};
-    line.isRim = isRim_[c.triangle] != 0;
-    return line;
-}
-
-bool FeatureIndex::hasOtherBeside(const Line& line, double radius, double aside) const {
-    const auto isBeside = [&](std::uint32_t other) {
-        const auto& t = lines_.triangles[other];
-        const Vec3 way = closestPointOnTriangle(line.point, lines_.points[t[0]], lines_.points[t[1]], lines_.points[t[1]]) - line.point;
-        return norm2(way - line.tangent * dot(way, line.tangent)) > aside * aside;
-    };
-    return bool(lineIndex_->closest(line.point, radius, isBeside));
-}
-
-ClosestPoint FeatureIndex::closestCorner(const Vec3& q, double radius) const {
-    return cornerIndex_ ? cornerIndex_->closest(q, radius) : ClosestPoint{};
-}
-
-bool FeatureIndex::isCrowded(const ClosestPoint& corner, double radius) const {
-    return bool(cornerIndex_->closest(corner.point, radius, [&](std::uint32_t other) { return other != corner.triangle; }));
-}
 
 FeatureIndex::Line snapLine(const SurfaceIndex& index, const FeatureIndex& features, const Snap& snap, const Vec3& x, double h) {
     FeatureIndex::Line line{snap.point, snap.tangent, true};

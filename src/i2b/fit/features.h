@@ -7,36 +7,11 @@
 // the nearest part changes is one too, so that patches end along mesh edges.
 #pragma once
 #include "i2b/fit/band.h"
-#include "i2b/geometry/features.h"
-#include "i2b/geometry/surface_index.h"
-#include <memory>
+#include "i2b/fit/feature_index.h"
 
 namespace i2b {
 
 class WallViews;
-
-// Closest line (an edge of lineKinds) and closest corner of a feature graph.
-class FeatureIndex {
-  public:
-    explicit FeatureIndex(const FeatureGraph& graph);
-    bool empty() const { return lines_.triangles.empty(); }
-
-    struct Line {
-        Vec3 point, tangent; // tangent: unit
-        bool found = false;
-        bool isRim = false; // where a sheet ends
-    };
-    Line closestLine(const Vec3& q, double radius) const;
-    // Comes another line within radius of this one's point, and nowhere so near to its tangent as aside?
-    bool hasOtherBeside(const Line& line, double radius, double aside) const;
-    ClosestPoint closestCorner(const Vec3& q, double radius) const; // triangle: number among the corners
-    bool isCrowded(const ClosestPoint& corner, double radius) const; // is another one within radius of it?
-
-  private:
-    Surface lines_, corners_; // segments and points as degenerate triangles
-    std::vector<std::uint8_t> isRim_; // of lines_
-    std::unique_ptr<SurfaceIndex> lineIndex_, cornerIndex_;
-};
 
 enum class SnapKind : std::uint8_t { none, line, implicitLine, corner };
 

@@ -126,7 +126,7 @@ struct Parser {
             ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
             ->needs("--geometry");
         check.add_option("--case", line.limitsFile, "A case file, for the limits in its table [quality]")->type_name("CASE.toml");
-        addShared(check, {"scale", "feature-angle", "max-non-orthogonality", "min-pyramid-volume", "min-tet-quality",
+        addShared(check, {"scale", "feature-angle", "feature-lines", "feature-part", "feature-box", "max-non-orthogonality", "min-pyramid-volume", "min-tet-quality",
                           "max-concavity", "min-face-area", "max-internal-skewness", "max-boundary-skewness",
                           "min-face-weight", "min-volume-ratio", "min-twist", "min-triangle-twist", "min-flatness",
                           "min-determinant", "threads", "quiet"});

@@ -96,6 +96,7 @@ std::string fitText(const FitReport& fit) {
                        100 * fit.featureCaptureFraction, fit.featureSamples, 100 * fit.tiltedFaceFraction,
                        100 * fit.tilted45FaceFraction) +
            (fit.lostEdges.total == 0 ? "" : "    " + lostEdgesLine(fit.lostEdges)) +
+           (fit.faintSamples == 0 ? "" : fmt::format("    named and other faint edges captured: {:.2f} % of {} samples\n", 100 * fit.faintCaptureFraction, fit.faintSamples)) +
            (fit.borderSamples == 0 ? "" : fmt::format("    borders between parts captured: {:.2f} % of {} samples\n", 100 * fit.partBorderFraction, fit.borderSamples));
 }
 
@@ -142,6 +143,8 @@ std::string summaryText(const RunReport& report) {
         text += fmt::format(
             "fit: {:.2f} % of the wall nodes on the geometry, {:.1f} % of the sharp edges captured\n",
             100 * f->wallNodesOnGeometryFraction, 100 * f->featureCaptureFraction);
+    if (report.fit && report.fit->faintSamples > 0)
+        text += fmt::format("named and other faint edges: {:.1f} % captured\n", 100 * report.fit->faintCaptureFraction);
     if (report.fit && report.fit->lostEdges.total > 0) text += lostEdgesLine(report.fit->lostEdges);
     if (report.offGeometry && report.offGeometry->places.total > 0) text += offGeometryLine(report.offGeometry->places);
     if (report.fitCutShort) text += "the fit was cut short by --fit-seconds: another run may give another mesh\n";

@@ -19,15 +19,18 @@ FitReport fitTo(const PolyMesh& mesh, const Rows& cellFaces, const GeometryOptio
                 Run& run) {
     GeometryNotes notes;
     Surface surface;
+    FeatureLines lines;
     {
         Stage stage(run.context, "read");
+        lines = readFeatureLines(geometry.featureLines, geometry.scale, notes.messages);
         surface = readSurface(geometry.files, geometry.scale, notes);
         stage.items = surface.triangles.size();
     }
     Stage stage(run.context, "fit");
     const SurfaceIndex index(surface);
-    const FeatureOptions options{geometry.featureAngle, 0};
+    const FeatureOptions options = featureOptions(geometry, lines);
     FeatureGraph features = buildFeatureGraph(surface, options);
+    for (const std::string& note : features.notes) fmt::print(run.out, "note: {}\n", note);
     markRims(features, index, options);
     FitReport fit = measureFit(mesh, cellFaces, index, features, patches);
     measurePartBorders(mesh, cellFaces, index, patches, fit);

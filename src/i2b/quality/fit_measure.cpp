@@ -87,6 +87,7 @@ FitReport measureFit(const PolyMesh& mesh, const Rows& cellFaces, const SurfaceI
     std::vector<double> distance = measureNodes(mesh, wall, index, report);
     const std::vector<std::uint8_t> tilted = measureFaces(wall, index, sharp, report);
     if (!sharpEdges.triangles.empty()) measureCapture(mesh, wall, index, sharpEdges, sharp, report);
+    measureFaintCapture(mesh, wall, index, features, report);
     if (!nodes) return report;
     nodes->distanceInH = std::move(distance);
     nodes->tilted.assign(wall.nodes.size(), 0);

@@ -20,6 +20,10 @@
 // geometry, seen from there, goes straight on: where parts lie flush, or one ends at the far side of another, what is seen 0.1 h to both
 // sides folds by no more than a wall edge must. The share that has a wall edge, folded by more than 25 degrees, within 0.1 h.
 //
+// Faint edges: the lines that the geometry's user named, and edges over a feature angle of his below 40 degrees: a wall need not fold there.
+// The same samples, where any line of either kind that is near counts against "resolvable"; captured where an edge of the wall that runs
+// along the line, within 30 degrees, is within 0.1 h.
+//
 // Borders: the same along the lines where two parts meet (border_lines.h), of samples that are seen from the flow 0.3 h
 // over the nearest wall, one of the parts at either side 0.1 h from the line and none at both; the share that has an edge
 // between the patches of these two parts, or of others that lie upon them there, within 0.1 h.
@@ -62,6 +66,8 @@ struct FitReport {
     double featureCaptureFraction = 1; // of resolvable samples every h/4 along sharp edges
     std::int64_t featureSamples = 0;
     LostEdges lostEdges;               // where the others are
+    double faintCaptureFraction = 1;   // of resolvable samples every h/4 along faint edges
+    std::int64_t faintSamples = 0;
     double tiltedFaceFraction = 0; // normal over 25 degrees off, more than h from sharp edges
     double tilted45FaceFraction = 0;
     double partBorderFraction = 1;   // of resolvable samples every h/4 along the lines where two parts meet
@@ -80,7 +86,7 @@ struct WallNodes {
 
 // Of the mesh's wall patches: those named, or all patches of type wall. features must have been built with an
 // angle of at most 40 degrees for the last figures to mean what is said above, and rims count where it has any marked: they
-// are told from cracks anew, by the wall's own size. All is the same on any number of threads. nodes: filled where given and there is something to measure. cellFaces: buildCellFaces().
+// are told from cracks anew, by the wall's own size. Faint edges are those of features that fold less. All is the same on any number of threads. nodes: filled where given and there is something to measure. cellFaces: buildCellFaces().
 FitReport measureFit(const PolyMesh& mesh, const Rows& cellFaces, const SurfaceIndex& index, const FeatureGraph& features,
                      const std::vector<std::string>& patches = {}, WallNodes* nodes = nullptr);
 

@@ -38,4 +38,7 @@ Surface sharpSurface(const FeatureGraph& features, const Wall& wall, const Surfa
 // Fills the report's share of captured samples (fit_report.h). index: of the geometry; sharp: of sharpEdges, which is not empty.
 void measureCapture(const PolyMesh& mesh, const Wall& wall, const SurfaceIndex& index, const Surface& sharpEdges, const SurfaceIndex& sharp, FitReport& report);
 
+// The same of faint edges.
+void measureFaintCapture(const PolyMesh& mesh, const Wall& wall, const SurfaceIndex& index, const FeatureGraph& features, FitReport& report);
+
 } // namespace i2b

@@ -44,6 +44,8 @@ Json fitJson(const FitReport& f) {
             {"mean_distance_in_h", number(f.meanDistanceInH)},
             {"max_distance_in_h", number(f.maxDistanceInH)},
             {"feature_capture_fraction", number(f.featureCaptureFraction)},
+            {"faint_capture_fraction", number(f.faintCaptureFraction)},
+            {"faint_samples", f.faintSamples},
             {"tilted_face_fraction", number(f.tiltedFaceFraction)},
             {"tilted_45_face_fraction", number(f.tilted45FaceFraction)}};
 }

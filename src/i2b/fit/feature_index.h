@@ -1,0 +1,40 @@
+// Closest places on the lines and corners of a feature graph.
+#pragma once
+#include "i2b/geometry/features.h"
+#include "i2b/geometry/surface_index.h"
+#include <memory>
+
+namespace i2b {
+
+// Closest line (an edge of lineKinds) and closest corner of a feature graph.
+class FeatureIndex {
+  public:
+    explicit FeatureIndex(const FeatureGraph& graph);
+    bool empty() const { return lines_.triangles.empty(); }
+
+    struct Line {
+        Vec3 point, tangent; // tangent: unit
+        bool found = false;
+        bool isRim = false;   // where a sheet ends
+        bool isFaint = false; // folds by so little, if at all, that the normals at its sides do not tell
+    };
+    Line closestLine(const Vec3& q, double radius) const;
+    bool hasFaint() const { return hasFaint_; }
+    Line closestFaint(const Vec3& q, double radius) const; // of the faint ones
+    // Comes another line within radius of this one's point, and nowhere so near to its tangent as aside?
+    bool hasOtherBeside(const Line& line, double radius, double aside) const;
+    ClosestPoint closestCorner(const Vec3& q, double radius) const; // triangle: number among the corners
+    bool isCrowded(const ClosestPoint& corner, double radius) const; // is another one within radius of it?
+    bool isFaint(const ClosestPoint& corner) const { return isFaintCorner_[corner.triangle] != 0; } // do none but faint lines meet there?
+
+  private:
+    Line lineAt(const ClosestPoint& place) const;
+
+    Surface lines_, corners_; // segments and points as degenerate triangles
+    std::vector<std::uint8_t> isRim_, isFaint_; // of lines_
+    std::vector<std::uint8_t> isFaintCorner_;   // of corners_
+    bool hasFaint_ = false;
+    std::unique_ptr<SurfaceIndex> lineIndex_, cornerIndex_;
+};
+
+} // namespace i2b
