@@ -1,8 +1,9 @@
-// Proves: the fit sees every line that a mesh should show, sharp, named or rim, and no other edge of the graph, and which of them a
-// node stands all but on.
+// Proves: the fit sees every line that a mesh should show, sharp, named or rim, and no other edge of the graph, which of them are faint,
+// and which a node stands all but on; creases are kept apart from lines.
 #include "i2b/fit/features.h"
 #include "i2b/geometry/rims.h"
 #include <gtest/gtest.h>
+#include <numbers>
 
 namespace i2b {
 namespace {
@@ -57,6 +58,49 @@ TEST(FeatureIndex, linesUponWhichNodesStand) {
     const FeatureIndex rims(graph);
     EXPECT_TRUE(rims.closestLine({0.5, 1.01, 0}, 0.1).isRim);
     EXPECT_FALSE(lineUpon(rims, {0.5, 1.01, 0}, 0.1).found);
+}
+
+// Two squares that fold by so many degrees.
+Surface folded(double degrees) {
+    Surface s = sheets();
+    const double angle = degrees * std::numbers::pi / 180;
+    for (Vec3& p : s.points) {
+        if (p.x > 1) p.x = 1 + std::cos(angle), p.z = std::sin(angle);
+    }
+    return s;
+}
+
+// Lines at which the normals of the two sides do not tell: named ones on flat walls, and folds over a small angle of the user's.
+TEST(FeatureIndex, faintLines) {
+    const Vec3 onBorder{1, 0.5, 0};
+    const FeatureIndex small(buildFeatureGraph(folded(20), {.angle = 15}));
+    EXPECT_TRUE(small.hasFaint());
+    EXPECT_TRUE(small.closestLine(onBorder, 0.1).isFaint);
+    EXPECT_TRUE(small.closestFaint(onBorder, 0.1).found);
+    EXPECT_TRUE(small.isFaint(small.closestCorner({1, 0, 0}, 0.1)));
+    const FeatureIndex large(buildFeatureGraph(folded(60), {.angle = 15}));
+    EXPECT_FALSE(large.hasFaint());
+    EXPECT_FALSE(large.closestLine(onBorder, 0.1).isFaint);
+    EXPECT_FALSE(large.isFaint(large.closestCorner({1, 0, 0}, 0.1)));
+    const FeatureIndex named(buildFeatureGraph(sheets(), {.parts = {"left"}}));
+    EXPECT_TRUE(named.closestFaint(onBorder, 0.1).found);
+}
+
+// Folds below the angle are creases, which are no lines; without sharp edges there are none.
+TEST(FeatureIndex, creases) {
+    const Vec3 onBorder{1, 0.5, 0};
+    const FeatureIndex mild(buildFeatureGraph(folded(20), {}));
+    EXPECT_TRUE(mild.hasCreases());
+    EXPECT_TRUE(mild.closestCrease(onBorder, 0.1).found);
+    EXPECT_TRUE(mild.closestCrease(onBorder, 0.1, 15).found);
+    EXPECT_FALSE(mild.closestCrease(onBorder, 0.1, 25).found);
+    EXPECT_FALSE(mild.closestLine(onBorder, 0.1).found);
+    EXPECT_TRUE(mild.empty());
+    EXPECT_FALSE(mild.closestCorner({1, 0, 0}, 0.1));
+    for (const double degrees : {3.0, 50.0}) EXPECT_FALSE(FeatureIndex(buildFeatureGraph(folded(degrees), {})).hasCreases()) << degrees;
+    EXPECT_FALSE(FeatureIndex(buildFeatureGraph(folded(20), {.angle = 180})).hasCreases());
+    const FeatureBox none{{{-1, -1, -1}, {3, 3, 3}}, BoxEdges::none};
+    EXPECT_FALSE(FeatureIndex(buildFeatureGraph(folded(20), {.boxes = {none}})).hasCreases());
 }
 
 } // namespace

@@ -24,11 +24,17 @@ constexpr double flush = 0.15;      // of h: the way over a higher step,
 constexpr double halfway = 0.1;     // of h: where it is so far off the geometry, changes parts halfway between its sides, not at a border
 constexpr double aside = 0.04;      // of h: so far off the way a line is over it,
 constexpr double alongWay = 0.7;    // cosine: if it does not run along it
-constexpr double offFaint = 0.15;   // of h: so far off the way a faint line may be,
-constexpr double overGeometry = 0.05; // and so far off the geometry,
+constexpr double offWay = 0.15;     // of h: so far off the way a line that it leads over may be,
+constexpr double alongWholly = 0.95; // cosine: if it does not all but run along it
+constexpr double overGeometry = 0.05; // of h: a faint line may be so far off the geometry,
 constexpr double faintApart = 0.5;  // if no other line comes so near to its place
 constexpr double faintAside = 0.1;  // at least so far beside it
-constexpr double alongFaint = 0.95; // cosine: a way that runs along a faint line leads over none
+const double sameSide = std::cos(leastCrease * degree); // feet that differ by less are not parted by a crease
+constexpr double offCrease = 0.01;  // of h: a way that comes nearer to a crease follows the geometry,
+constexpr double creaseApart = 0.5; // and one so near to a line is left to that
+constexpr double creaseReach = 0.5; // of the feet's distance: so near to the middle a crease parts feet whose planes do not meet,
+constexpr float creaseFold = 15;    // degrees: if it folds by more
+constexpr double creaseBeside = 0.2; // of h: and is so far from a line
 
 // The place on the geometry for one where two planes meet: of a rounded edge the middle. Beside a crack both planes end as far
 // away: all along it the rim of the same one, or the mesh would change sides from node to node. Normals are compared without their
@@ -97,6 +103,20 @@ bool partChange(const SurfaceIndex& index, const Foot& from, Vec3 to, double& of
     return true;
 }
 
+// The line that the way from a to b leads over, at the share t of it.
+template <class Closest>
+FeatureIndex::Line lineUnderWay(const Closest& closest, const Vec3& a, const Vec3& b, double h, double& t) {
+    const double length = norm(b - a);
+    FeatureIndex::Line line = closest((a + b) * 0.5, 0.5 * length + offWay * h);
+    for (int round = 0; line.found && round < 2; ++round) { // lines turn
+        Vec3 place;
+        t = nearestOn(line, a, b, place);
+        if (std::abs(dot(line.tangent, b - a)) > alongWholly * length || !(t > 0 && t < 1)) return {};
+        line = closest(a + (b - a) * t, offWay * h);
+    }
+    return line;
+}
+
 } // namespace
 
 Foot footAt(const SurfaceIndex& index, const Vec3& q, const Vec3& fluid, double radius) {
@@ -138,7 +158,12 @@ Between lineBetween(const SurfaceIndex& index, const FeatureIndex& features, con
     if (isRim) radius = std::max(radius, rimReach * h);
     const FeatureIndex::Line line = features.closestLine((a.point + b.point) * 0.5, radius);
     if (line.found && isSeen(index, fluid, line.point, h)) return {line, SnapKind::line, isRim || (liesOn(a, line.point, h) && liesOn(b, line.point, h))};
-    return {implicitLine(index, a, b, fluid, h), SnapKind::implicitLine};
+    const FeatureIndex::Line implicit = implicitLine(index, a, b, fluid, h);
+    if (implicit.found || !features.hasCreases()) return {implicit, SnapKind::implicitLine};
+    // The sides do not go on as planes, as at a blunt edge: it may have a crease.
+    const FeatureIndex::Line crease = features.closestCrease((a.point + b.point) * 0.5, creaseReach * apart, creaseFold);
+    const bool isAlone = crease.found && !features.closestLine(crease.point, creaseBeside * h).found;
+    return {isAlone && isSeen(index, fluid, crease.point, h) ? crease : implicit, SnapKind::implicitLine};
 }
 
 Between meetingOf(const SurfaceIndex& index, const FeatureIndex& features, const Foot& a, const Foot& b, const Vec3& fluid, double h) {
@@ -179,17 +204,23 @@ Between lineOver(const SurfaceIndex& index, const FeatureIndex& features, const 
 
 Between faintBetween(const SurfaceIndex& index, const FeatureIndex& features, const Vec3& a, const Vec3& b, const Vec3& fluid, double h) {
     if (!features.hasFaint()) return {};
-    const double length = norm(b - a);
-    FeatureIndex::Line line = features.closestFaint((a + b) * 0.5, 0.5 * length + offFaint * h);
-    for (int round = 0; line.found && round < 2; ++round) { // lines turn
-        Vec3 place;
-        const double t = nearestOn(line, a, b, place);
-        if (std::abs(dot(line.tangent, b - a)) > alongFaint * length || !(t > 0 && t < 1)) return {};
-        line = features.closestFaint(a + (b - a) * t, offFaint * h);
-    }
+    double t = 0;
+    const auto closest = [&](const Vec3& q, double radius) { return features.closestFaint(q, radius); };
+    const FeatureIndex::Line line = lineUnderWay(closest, a, b, h, t);
     if (!line.found || !index.closest(line.point, overGeometry * h) || features.hasOtherBeside(line, faintApart * h, faintAside * h)) return {};
     if (!isSeen(index, fluid, line.point, h)) return {};
     return {line, SnapKind::line};
+}
+
+Between creaseBetween(const SurfaceIndex& index, const FeatureIndex& features, const Foot& footA, const Foot& footB, const Vec3& a, const Vec3& b,
+                      const Vec3& fluid, double h) {
+    if (!features.hasCreases() || !footA.found || !footB.found || dot(footA.normal, footB.normal) > sameSide) return {};
+    double t = 0;
+    const auto closest = [&](const Vec3& q, double radius) { return features.closestCrease(q, radius); };
+    const FeatureIndex::Line crease = lineUnderWay(closest, a, b, h, t);
+    if (!crease.found || norm(crease.point - (a + (b - a) * t)) < offCrease * h || features.closestLine(crease.point, creaseApart * h).found) return {};
+    if (!isSeen(index, fluid, crease.point, h)) return {};
+    return {crease, SnapKind::implicitLine};
 }
 
 Between borderBetween(const SurfaceIndex& index, const Foot& a, const Foot& b, const Vec3& fluid, double h) {

@@ -30,7 +30,7 @@ struct Between {
 };
 
 // The feature between two feet that turn: a sharp edge of the soup, or else the line in which their tangent planes
-// meet, if the geometry confirms it. h: m, size of the cells around; fluid: a place in the fluid near by. intoHollows: also where the
+// meet, if the geometry confirms it, or a crease. h: m, size of the cells around; fluid: a place in the fluid near by. intoHollows: also where the
 // line is farther from the feet than these are apart.
 Between lineBetween(const SurfaceIndex& index, const FeatureIndex& features, const Foot& a, const Foot& b, const Vec3& fluid, double h, bool intoHollows = false);
 
@@ -49,6 +49,10 @@ double nearestOn(const FeatureIndex::Line& line, const Vec3& a, const Vec3& b, V
 
 // The faint line (feature_index.h) that the way from one place on the wall to another leads over, where no other line runs near by.
 Between faintBetween(const SurfaceIndex& index, const FeatureIndex& features, const Vec3& a, const Vec3& b, const Vec3& fluid, double h);
+
+// The crease between two feet that do not turn, where the way from a to b leads over it, off the geometry, and no line is near by.
+Between creaseBetween(const SurfaceIndex& index, const FeatureIndex& features, const Foot& footA, const Foot& footB, const Vec3& a, const Vec3& b,
+                      const Vec3& fluid, double h);
 
 // The border between two parts that lie flush, where it is seen from a place in the fluid; none where they lie upon each other.
 Between borderBetween(const SurfaceIndex& index, const Foot& a, const Foot& b, const Vec3& fluid, double h);

@@ -190,7 +190,9 @@ EdgeCrossing Finder::on(std::int32_t edge) const {
     Between between = lineAcross(p, q);
     c.kind = between.kind;
     if (!between.line.found) {
-        if (!c.beside) between = bendOn(p, q), c.bend = true;
+        between = creaseBetween(index, features, marks.feet[p], marks.feet[q], x[p], x[q], (frontOf(p) + frontOf(q)) * 0.5, std::max(band.h[p], band.h[q]));
+        if (between.line.found) {
+        } else if (!c.beside) between = bendOn(p, q), c.bend = true;
         else if (!(marks.onLine[p] && marks.onLine[q])) between = marks.onLine[p] ? bendBeside(p, q) : bendBeside(q, p);
         if (between.line.found && isUnderEnd(between.line.point, p, q)) return c;
         c.kind = SnapKind::none;

@@ -21,6 +21,10 @@ class FeatureIndex {
     Line closestLine(const Vec3& q, double radius) const;
     bool hasFaint() const { return hasFaint_; }
     Line closestFaint(const Vec3& q, double radius) const; // of the faint ones
+    // Creases are no lines: nothing else here counts them.
+    bool hasCreases() const { return creaseIndex_ != nullptr; }
+    Line closestCrease(const Vec3& q, double radius) const;
+    Line closestCrease(const Vec3& q, double radius, float leastFold) const; // of those that fold by more, degrees
     // Comes another line within radius of this one's point, and nowhere so near to its tangent as aside?
     bool hasOtherBeside(const Line& line, double radius, double aside) const;
     ClosestPoint closestCorner(const Vec3& q, double radius) const; // triangle: number among the corners
@@ -30,11 +34,12 @@ class FeatureIndex {
   private:
     Line lineAt(const ClosestPoint& place) const;
 
-    Surface lines_, corners_; // segments and points as degenerate triangles
+    Surface lines_, creases_, corners_; // segments and points as degenerate triangles
     std::vector<std::uint8_t> isRim_, isFaint_; // of lines_
+    std::vector<float> creaseFold_;             // degrees, of creases_
     std::vector<std::uint8_t> isFaintCorner_;   // of corners_
     bool hasFaint_ = false;
-    std::unique_ptr<SurfaceIndex> lineIndex_, cornerIndex_;
+    std::unique_ptr<SurfaceIndex> lineIndex_, creaseIndex_, cornerIndex_;
 };
 
 } // namespace i2b

@@ -124,7 +124,9 @@ struct EdgeLook {
         if (heldB) return {besideLine(band, index, features, x, feet[a], snaps[b], q, p)};
         if (turns(feet[a], feet[b])) return {acrossTurn(p, q)};
         if (const Between faint = faintBetween(index, features, x[a], x[b], fluidAt(p), hOf(p, q)); faint.line.found) return {crossingOf(band, index, features, x, faint, p, q)};
-        return feet[a].found && feet[b].found ? betweenAlike(p, q) : std::array<Crossing, 2>{};
+        if (!feet[a].found || !feet[b].found) return {};
+        const std::array<Crossing, 2> found = betweenAlike(p, q);
+        return found[0].node >= 0 || found[1].node >= 0 ? found : std::array<Crossing, 2>{acrossCrease(p, q)};
     }
 
   private:
@@ -139,6 +141,13 @@ struct EdgeLook {
         if (between.isOfBoth || crossing.node >= 0) return crossing;
         crossing = crossingOf(band, index, features, x, meetingOf(index, features, a, b, fluidAt(p), hOf(p, q)), p, q, otherReach);
         return crossing.node < 0 ? crossingOf(band, index, features, x, between, p, q) : crossing;
+    }
+    // After all that cross a line.
+    Crossing acrossCrease(std::int32_t p, std::int32_t q) const {
+        const auto a = static_cast<std::size_t>(p), b = static_cast<std::size_t>(q);
+        Crossing crossing = crossingOf(band, index, features, x, creaseBetween(index, features, feet[a], feet[b], x[a], x[b], fluidAt(p), hOf(p, q)), p, q);
+        crossing.distance += 2 * reach;
+        return crossing;
     }
     // Its ends do not tell them apart: what lies between may.
     std::array<Crossing, 2> betweenAlike(std::int32_t p, std::int32_t q) const {

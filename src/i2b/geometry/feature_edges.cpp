@@ -100,7 +100,7 @@ FeatureEdge judge(const FeatureSoup& soup, const Side* sides, std::size_t n, dou
         border = border || part != soup.partOf[sides[0].triangle];
         named = named || (static_cast<std::size_t>(part) < isNamed.size() && isNamed[static_cast<std::size_t>(part)]);
     }
-    if (angle > limit) edge.kinds |= bitOf(EdgeKind::sharp);
+    edge.kinds |= kindOfFold(angle, limit);
     if (n == 1) edge.kinds |= bitOf(EdgeKind::free);
     if (n > 2) edge.kinds |= bitOf(EdgeKind::nonManifold);
     if (border) edge.kinds |= bitOf(EdgeKind::partBorder);
@@ -109,6 +109,11 @@ FeatureEdge judge(const FeatureSoup& soup, const Side* sides, std::size_t n, dou
 }
 
 } // namespace
+
+std::uint8_t kindOfFold(double fold, double limit) {
+    if (fold > limit) return bitOf(EdgeKind::sharp);
+    return limit < 180 && fold > leastCrease && fold <= mostCrease ? bitOf(EdgeKind::crease) : 0;
+}
 
 RawVector<FeatureEdge> judgeEdges(const FeatureSoup& soup, double limit, const std::vector<bool>& isNamed,
                                     FeatureGraph& graph) {

@@ -91,7 +91,7 @@ std::string FeatureGraph::validate() const {
         const FeatureEdge& e = edges[i];
         if (e.a >= e.b || e.b >= points.size())
             return fmt::format("feature edge {} runs from point {} to {} of {}", i, e.a, e.b, points.size());
-        if (e.kinds == 0 || e.kinds > 63) return fmt::format("feature edge {} has kinds {}", i, e.kinds);
+        if (e.kinds == 0 || e.kinds > 127) return fmt::format("feature edge {} has kinds {}", i, e.kinds);
         if (!(e.angle >= 0 && e.angle <= 180)) return fmt::format("feature edge {} has angle {}", i, e.angle);
         if (i > 0 && !(std::pair{edges[i - 1].a, edges[i - 1].b} < std::pair{e.a, e.b}))
             return fmt::format("feature edge {} is out of order", i);

@@ -27,6 +27,8 @@ struct FeatureOptions {
 // What the options of a run ask for; lines: what their files hold.
 FeatureOptions featureOptions(const GeometryOptions& geometry, const FeatureLines& lines);
 
+// Degrees between which folds not over the limit are creases; where nothing is to be sharp, as the limit is 180, there are none.
+inline constexpr double leastCrease = 6, mostCrease = 40;
 inline constexpr double boxAngle = 1; // degrees; flat faces of single-precision triangles fold by less
 
 enum class EdgeKind : std::uint8_t {
@@ -35,7 +37,8 @@ enum class EdgeKind : std::uint8_t {
     nonManifold = 4, // three or more triangles
     partBorder = 8,  // triangles of different parts
     named = 16,      // named by the user: a line from a file, or what bounds a named part
-    rim = 32         // free, and the sheet ends there in the open; see markRims() in rims.h
+    rim = 32,        // free, and the sheet ends there in the open; see markRims() in rims.h
+    crease = 64      // a milder fold, over leastCrease, that a mesh follows where nothing else is near
 };
 
 constexpr std::uint8_t bitOf(EdgeKind kind) { return static_cast<std::uint8_t>(kind); }

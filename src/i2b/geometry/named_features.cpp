@@ -1,4 +1,5 @@
 #include "i2b/geometry/named_features.h"
+#include "i2b/geometry/feature_edges.h"
 #include "i2b/geometry/part_names.h"
 #include <algorithm>
 #include <fmt/format.h>
@@ -64,8 +65,8 @@ double angleBy(BoxEdges rule) { return rule == BoxEdges::all ? boxAngle : 180; }
 
 void judgeBy(const Rule& rule, FeatureEdge& edge) {
     if (!rule) return; // as the angle says
-    edge.kinds &= static_cast<std::uint8_t>(~bitOf(EdgeKind::sharp));
-    if (double(edge.angle) > angleBy(*rule)) edge.kinds |= bitOf(EdgeKind::sharp);
+    edge.kinds &= static_cast<std::uint8_t>(~foldKinds);
+    edge.kinds |= kindOfFold(double(edge.angle), angleBy(*rule));
     if (*rule == BoxEdges::none) edge.kinds &= static_cast<std::uint8_t>(~bitOf(EdgeKind::named));
 }
 

@@ -13,7 +13,7 @@ namespace i2b {
 struct WallInput {
     const GridResult& cartesian;
     const LatticeMesh& lattice;     // of cartesian.kept
-    const FeatureGraph& features;
+    const FeatureIndex& features;
     const WallPlans& plans;
     const FitOptions& fit;
     const DictionaryLimits& limits; // of faces, asked for,
