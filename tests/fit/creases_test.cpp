@@ -1,5 +1,5 @@
-// Proves: where a round wall is given in facets wider than a cell, the mesh follows the creases between them and lies nearer to it, with
-// nodes on the geometry; sharp edges keep their nodes; nothing changes where there are no creases.
+// Proves: where a round wall is given in facets wider than a cell, the mesh follows the creases between them and lies nearer to it,
+// and sharp edges keep their nodes.
 #include "pipeline/stages_run.h"
 #include <gtest/gtest.h>
 #include <numbers>
@@ -73,7 +73,6 @@ TEST(Creases, AreFollowed) {
     EXPECT_GT(with.followed(bitOf(EdgeKind::crease)), 0.9);
     EXPECT_LT(without.followed(bitOf(EdgeKind::crease)), 0.7);
     EXPECT_GE(with.followed(bitOf(EdgeKind::sharp)), 0.99);
-    std::printf("%g %g  %g %g  %g %g\n", with.meanOff(), without.meanOff(), with.followed(64), without.followed(64), with.followed(1), without.followed(1));
 }
 
 } // namespace

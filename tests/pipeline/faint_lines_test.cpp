@@ -120,7 +120,6 @@ TEST_P(FaintLines, AreFollowed) {
         EXPECT_GE(mesh.report.fit->faintCaptureFraction, 0.97);
         EXPECT_GE(mesh.report.fit->featureCaptureFraction, 0.97);
         EXPECT_GE(mesh.report.fit->wallNodesOnGeometryFraction, 0.99);
-        fmt::print("{} {}: faint {:.4f} of {} sharp {:.4f} nodes {:.4f} {:.1f} deg {:.2f}\n", GetParam()().name, seed, mesh.report.fit->faintCaptureFraction, mesh.report.fit->faintSamples, mesh.report.fit->featureCaptureFraction, mesh.report.fit->wallNodesOnGeometryFraction, mesh.report.quality->maxNonOrthogonality, mesh.report.quality->maxSkewness);
     }
 }
 

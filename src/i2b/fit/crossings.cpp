@@ -43,6 +43,7 @@ struct Finder {
     double foldAt(std::size_t held, std::size_t other, const Vec3& way) const;
     bool isUnderEnd(const Vec3& bend, std::size_t p, std::size_t q) const;
     Between lineAcross(std::size_t p, std::size_t q) const;
+    Between foldAcross(EdgeCrossing& c) const;
     EdgeCrossing edgeOf(std::int32_t edge) const;
     EdgeCrossing on(std::int32_t edge) const;
     EdgeCrossing cornerBeyond(std::int32_t edge) const;
@@ -156,6 +157,18 @@ Between Finder::lineAcross(std::size_t p, std::size_t q) const {
     return between;
 }
 
+// What no line is: a crease, or where the geometry bends.
+Between Finder::foldAcross(EdgeCrossing& c) const {
+    const auto p = static_cast<std::size_t>(c.p), q = static_cast<std::size_t>(c.q);
+    const Vec3 fluid = (frontOf(p) + frontOf(q)) * 0.5;
+    const Between crease = creaseBetween(index, features, marks.feet[p], marks.feet[q], x[p], x[q], fluid, std::max(band.h[p], band.h[q]));
+    if (crease.line.found) return crease;
+    c.bend = !c.beside;
+    if (c.bend) return bendOn(p, q);
+    if (marks.onLine[p] && marks.onLine[q]) return {};
+    return marks.onLine[p] ? bendBeside(p, q) : bendBeside(q, p);
+}
+
 EdgeCrossing Finder::edgeOf(std::int32_t edge) const {
     EdgeCrossing c;
     const auto he = front.mesh.halfedge_handle(FrontMesh::EdgeHandle(edge), 0);
@@ -190,10 +203,7 @@ EdgeCrossing Finder::on(std::int32_t edge) const {
     Between between = lineAcross(p, q);
     c.kind = between.kind;
     if (!between.line.found) {
-        between = creaseBetween(index, features, marks.feet[p], marks.feet[q], x[p], x[q], (frontOf(p) + frontOf(q)) * 0.5, std::max(band.h[p], band.h[q]));
-        if (between.line.found) {
-        } else if (!c.beside) between = bendOn(p, q), c.bend = true;
-        else if (!(marks.onLine[p] && marks.onLine[q])) between = marks.onLine[p] ? bendBeside(p, q) : bendBeside(q, p);
+        between = foldAcross(c);
         if (between.line.found && isUnderEnd(between.line.point, p, q)) return c;
         c.kind = SnapKind::none;
     }

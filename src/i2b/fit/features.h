@@ -4,7 +4,8 @@
 // A wall edge whose two ends lie on surfaces that differ by more than 25 degrees crosses a feature. Where the soup has a
 // sharp edge there, that is it; where it has none (parts that intersect without a common edge), it is the line in
 // which the tangent planes of the two ends meet, if the geometry confirms it. Where parts lie flush, the line on which
-// the nearest part changes is one too, so that patches end along mesh edges.
+// the nearest part changes is one too, so that patches end along mesh edges. Faint lines (feature_index.h) are crossed where the edge leads
+// over them; so, after all others, are creases.
 #pragma once
 #include "i2b/fit/band.h"
 #include "i2b/fit/feature_index.h"
