@@ -56,7 +56,7 @@ void run(const std::string& geometry, double size, const std::filesystem::path& 
     FeatureOptions sharp;
     sharp.angle = options.geometry.featureAngle;
     const FeatureGraph features = buildFeatureGraph(grid->surface, sharp);
-    fitFront(front, lattice, *grid->index, FeatureIndex(features), options.fit, context);
+    fitFront(front, lattice, *grid->index, features, options.fit, context);
     writeSurface(front, front.front, folder / "front-smoothed.ply");
     writeSurface(front, wallPoints(front), folder / "front-wall.ply");
     std::cout << fmt::format("front: {} faces, {} vertices\n", front.mesh.n_faces(), front.mesh.n_vertices());

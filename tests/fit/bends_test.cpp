@@ -15,7 +15,7 @@ struct Blunt : ToFront {
     Blunt() : ToFront(turnedBox(), stagesOptions()) {
         FitOptions options;
         options.features = false;
-        fitFront(front, lattice, *painted.index, features, options, {});
+        fitFront(front, lattice, *painted.index, graph, options, {});
     }
     std::vector<Vec3> walls() const {
         std::vector<Vec3> places;
@@ -88,8 +88,8 @@ TEST(Bends, FitLeavesWholeFacesWhole) {
     ToFront free(turnedBox(), stagesOptions()), held(turnedBox(), stagesOptions());
     const std::size_t faces = held.front.ownerCell.size();
     held.front.whole = held.front.ownerCell;
-    const FitSummary cut = fitFront(free.front, free.lattice, *free.painted.index, free.features, FitOptions{}, {});
-    const FitSummary whole = fitFront(held.front, held.lattice, *held.painted.index, held.features, FitOptions{}, {});
+    const FitSummary cut = fitFront(free.front, free.lattice, *free.painted.index, free.graph, FitOptions{}, {});
+    const FitSummary whole = fitFront(held.front, held.lattice, *held.painted.index, held.graph, FitOptions{}, {});
     EXPECT_GT(cut.split + cut.inserted, 0u);
     EXPECT_EQ(whole.split + whole.inserted, 0u);
     EXPECT_EQ(held.front.ownerCell.size(), faces);

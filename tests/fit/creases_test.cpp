@@ -31,7 +31,7 @@ struct Fitted : ToFront {
     explicit Fitted(bool withCreases) : ToFront(drum(), stagesOptions()) {
         FeatureGraph g = graph;
         if (!withCreases) std::erase_if(g.edges, [](const FeatureEdge& e) { return (e.kinds & bitOf(EdgeKind::crease)) != 0; });
-        fitFront(front, lattice, *painted.index, FeatureIndex(g), FitOptions{}, Context());
+        fitFront(front, lattice, *painted.index, g, FitOptions{}, Context());
     }
     double meanOff() const { // of the middles of faces, in h
         double sum = 0;

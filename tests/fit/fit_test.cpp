@@ -304,7 +304,7 @@ TEST(FitFront, LeavesTheRoomThatLayersWant) {
         std::size_t n = 0;
         forSettings(1, [&](Setting& s, unsigned seed) {
             const FeatureGraph graph = buildFeatureGraph(s.painted.soup, FeatureOptions{});
-            fitFront(s.front, s.lattice, *s.painted.index, FeatureIndex(graph), FitOptions{}, Context(), wanted);
+            fitFront(s.front, s.lattice, *s.painted.index, graph, FitOptions{}, Context(), wanted);
             EXPECT_EQ(s.front.validate(), "") << "seed " << seed;
             for (std::size_t v = 0; v < s.front.front.size(); ++v, ++n) {
                 const Vec3 b = s.front.wall(v);
@@ -330,7 +330,7 @@ TEST(FitFront, SidesOfTheDomainStayPlanes) {
         const std::vector<std::uint8_t> outside = s.front.outside;
         const RawVector<Vec3> lattice = s.lattice.latticePoints();
         const Context context;
-        fitFront(s.front, s.lattice, *s.painted.index, FeatureIndex(graph), FitOptions{}, context);
+        fitFront(s.front, s.lattice, *s.painted.index, graph, FitOptions{}, context);
         EXPECT_EQ(s.front.validate(), "") << "seed " << seed;
         const Box domain = s.lattice.lattice().domain();
         const auto keeps = [&](const Vec3& p, std::uint8_t sides) {

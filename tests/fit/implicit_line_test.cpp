@@ -20,7 +20,7 @@ TEST_P(BoxesThatCross, KeepTheirNodes) {
         const ToFront run(c.soup, c.options);
         Front front = run.front;
         const SurfaceIndex index(run.painted.soup);
-        const FitSummary fitted = fitFront(front, run.lattice, index, run.features, c.options.fit, Context());
+        const FitSummary fitted = fitFront(front, run.lattice, index, run.graph, c.options.fit, Context());
         for (std::size_t v = 0; v < fitted.snaps.size(); ++v) {
             if (fitted.snaps[v].kind != SnapKind::implicitLine) continue;
             ++implicit;

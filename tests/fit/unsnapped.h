@@ -10,7 +10,7 @@ struct Unsnapped : ToFront {
     explicit Unsnapped(const Surface& soup) : ToFront(soup, stagesOptions()), band(buildBand(lattice, front, 2)), views(band, *painted.index), snaps(band.walls) {
         FitOptions options;
         options.features = false;
-        fitFront(front, lattice, *painted.index, features, options, Context());
+        fitFront(front, lattice, *painted.index, graph, options, Context());
         x = band.start;
         std::map<std::int32_t, Vec3> moved;
         for (std::size_t i = 0; i < front.movedPoints.size(); ++i) moved[front.movedPoints[i]] = front.movedTo[i];

@@ -170,7 +170,7 @@ ToFront::ToFront(const Surface& soup, const Options& options)
 
 ToMesh::ToMesh(const Surface& soup, const Options& options) : ToFront(soup, options) {
     const Context context;
-    fitted = fitFront(front, lattice, *painted.index, features, options.fit, context);
+    fitted = fitFront(front, lattice, *painted.index, graph, options.fit, context);
     assignParts(front, *painted.index);
     layers = makeLayers(front, options.layers);
     mesh = assemble({lattice, kept, front, layers, painted.soup.parts});

@@ -1,14 +1,37 @@
 #include "i2b/fit/feature_index.h"
+#include <algorithm>
 
 namespace i2b {
 namespace {
 
 constexpr float faintFold = 35; // degrees: feet at its sides differ by over 25, by which they are told apart, even where these bend
 
-void addSegment(Surface& segments, const FeatureEdge& e) {
-    segments.triangles.push_back({e.a, e.b, e.b});
-    segments.partOf.push_back(0);
-}
+// Edges or points of a graph as triangles without area, on those of its points alone that they use.
+class Segments {
+  public:
+    Segments(const FeatureGraph& graph, std::size_t count, Surface& segments) : graph_(graph), segments_(segments), numberOf_(graph.points.size(), none) {
+        segments_.parts = {Part{"features", "", 0}};
+        segments_.triangles.reserve(count), segments_.partOf.reserve(count);
+    }
+    void add(std::uint32_t a, std::uint32_t b) {
+        const std::uint32_t from = numberOf(a), to = numberOf(b);
+        segments_.triangles.push_back({from, to, to});
+        segments_.partOf.push_back(0);
+    }
+
+  private:
+    static constexpr std::uint32_t none = ~0u;
+    std::uint32_t numberOf(std::uint32_t point) {
+        if (numberOf_[point] == none) {
+            numberOf_[point] = static_cast<std::uint32_t>(segments_.points.size());
+            segments_.points.push_back(graph_.points[point]);
+        }
+        return numberOf_[point];
+    }
+    const FeatureGraph& graph_;
+    Surface& segments_;
+    std::vector<std::uint32_t> numberOf_; // per point of the graph
+};
 
 FeatureIndex::Line placeOn(const Surface& segments, const ClosestPoint& c) {
     if (!c) return {};
@@ -20,24 +43,23 @@ FeatureIndex::Line placeOn(const Surface& segments, const ClosestPoint& c) {
 
 } // namespace
 
-FeatureIndex::FeatureIndex(const FeatureGraph& graph) {
-    lines_.parts = creases_.parts = corners_.parts = {Part{"features", "", 0}};
-    lines_.points = creases_.points = corners_.points = graph.points;
+FeatureIndex::FeatureIndex(const FeatureGraph& graph, Creases creases) {
+    const auto isLine = [](const FeatureEdge& e) { return (e.kinds & lineKinds) != 0; };
+    const auto isCrease = [&](const FeatureEdge& e) { return creases == Creases::kept && !isLine(e) && (e.kinds & bitOf(EdgeKind::crease)) != 0; };
+    const auto countOf = [&](const auto& is) { return static_cast<std::size_t>(std::ranges::count_if(graph.edges, is)); };
     std::vector<std::uint8_t> folds(graph.points.size(), 0);
+    Segments lines(graph, countOf(isLine), lines_), milder(graph, countOf(isCrease), creases_), corners(graph, graph.corners.size(), corners_);
     for (const FeatureEdge& e : graph.edges) {
-        if (!(e.kinds & lineKinds)) {
-            if (e.kinds & bitOf(EdgeKind::crease)) addSegment(creases_, e), creaseFold_.push_back(e.angle);
-            continue;
-        }
+        if (isCrease(e)) milder.add(e.a, e.b), creaseFold_.push_back(e.angle);
+        if (!isLine(e)) continue;
         const bool isRim = (e.kinds & bitOf(EdgeKind::rim)) != 0, isFaint = !isRim && e.angle < faintFold;
-        addSegment(lines_, e);
+        lines.add(e.a, e.b);
         isRim_.push_back(isRim), isFaint_.push_back(isFaint);
         hasFaint_ = hasFaint_ || isFaint;
         if (!isFaint) folds[e.a] = folds[e.b] = 1;
     }
     for (std::uint32_t c : graph.corners) {
-        corners_.triangles.push_back({c, c, c});
-        corners_.partOf.push_back(0);
+        corners.add(c, c);
         isFaintCorner_.push_back(folds[c] == 0);
     }
     if (!lines_.triangles.empty()) lineIndex_ = std::make_unique<SurfaceIndex>(lines_);

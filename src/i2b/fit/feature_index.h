@@ -6,10 +6,12 @@
 
 namespace i2b {
 
+enum class Creases : std::uint8_t { kept, leftOut };
+
 // Closest line (an edge of lineKinds) and closest corner of a feature graph.
 class FeatureIndex {
   public:
-    explicit FeatureIndex(const FeatureGraph& graph);
+    explicit FeatureIndex(const FeatureGraph& graph, Creases creases = Creases::kept);
     bool empty() const { return lines_.triangles.empty(); }
 
     struct Line {

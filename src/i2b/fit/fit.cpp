@@ -179,7 +179,7 @@ Positions projected(Band& band, const SurfaceIndex& index, const FeatureIndex& f
 
 } // namespace
 
-FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& index, const FeatureIndex& features,
+FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& index, const FeatureGraph& graph,
                     const FitOptions& options, const Context& context, const WantedRoom& room) {
     FitSummary summary;
     EnergyOptions energy;
@@ -188,6 +188,7 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     summary.wallNodes = band.walls;
     front.hanging = hangingPoints(band);
     context.checkCancelled();
+    const FeatureIndex features(graph);
     Positions x = projected(band, index, features, options.sweeps, context, summary);
 
     WallViews views(band, index);

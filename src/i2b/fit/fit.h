@@ -37,7 +37,7 @@ struct FitSummary {
 
 // Moves the front's vertices (front and wall positions, movedPoints). Every corner stays positive. Once options.seconds
 // are over no further sweep of the energy begins and no further features are looked for; the exact snap is always done.
-FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& index, const FeatureIndex& features,
+FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& index, const FeatureGraph& features,
                     const FitOptions& options, const Context& context, const WantedRoom& room = {});
 
 // --- steps, for tests and benchmarks -------------------------------------------------------------------------------

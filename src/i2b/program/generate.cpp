@@ -191,7 +191,6 @@ MeshResult generate(const Options& options, Context& context) {
     out.cartesian = generateGrid(options, context, Road::mesh);
     const GridResult& c = *out.cartesian;
     auto lattice = std::make_unique<LatticeMesh>(c.grid, c.kept);
-    std::unique_ptr<FeatureIndex> lines;
     const FeatureGraph features = stage(
         context, "features",
         [&] {
@@ -199,7 +198,6 @@ MeshResult generate(const Options& options, Context& context) {
             FeatureGraph graph = buildFeatureGraph(c.surface, f);
             // A wall that comes as near to a rim leaves no row of uncut cells for a mesh to wrap round it.
             markRims(graph, *c.index, f, 2 * options.size.surface);
-            lines = std::make_unique<FeatureIndex>(graph);
             return graph;
         },
         [](const FeatureGraph& f) { return f.edges.size(); });
@@ -211,7 +209,7 @@ MeshResult generate(const Options& options, Context& context) {
     if (limits.pyramidVolume != options.quality.pyramidVolume)
         notes.push_back(fmt::format("the limit of min-pyramid-volume, {:g} m3, is for larger cells than these: {:.2g} m3 is taken", options.quality.pyramidVolume, limits.pyramidVolume));
     const DictionaryLimits fallback = meshLimits({}, c.field.minSize, plans.plans);
-    Walls walls = makeWalls({c, *lattice, *lines, plans, options.fit, limits, fallback}, out.mesh, context);
+    Walls walls = makeWalls({c, *lattice, features, plans, options.fit, limits, fallback}, out.mesh, context);
     const DictionaryLimits& reached = walls.reach.limits;
     notes.insert(notes.end(), walls.reach.givenUp.begin(), walls.reach.givenUp.end());
     const std::int32_t thinFrom = walls.laid.stack.areFlat() ? static_cast<std::int32_t>(lattice->cellCount()) : out.mesh.cells;

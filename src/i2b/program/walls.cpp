@@ -23,7 +23,8 @@ void requireValid(const std::string& fault, const char* what) {
 RepairSummary assembleAndRepair(const WallInput& in, Walls& walls, PolyMesh& mesh, Context& context) {
     const GridResult& c = in.cartesian;
     LayerStack& layers = walls.laid.stack;
-    const WallGuide guide{*c.index, in.features, walls.fitted.snaps, walls.fitted.wishes};
+    const FeatureIndex lines(in.features, Creases::leftOut);
+    const WallGuide guide{*c.index, lines, walls.fitted.snaps, walls.fitted.wishes};
     const AssembleInput parts{in.lattice, c.kept, walls.front, layers, c.surface.parts};
     mesh = stage(
         context, "assemble", [&] { return assemble(parts); }, [](const PolyMesh& m) { return m.cells; });

@@ -13,7 +13,7 @@ namespace i2b {
 struct WallInput {
     const GridResult& cartesian;
     const LatticeMesh& lattice;     // of cartesian.kept
-    const FeatureIndex& features;
+    const FeatureGraph& features;
     const WallPlans& plans;
     const FitOptions& fit;
     const DictionaryLimits& limits; // of faces, asked for,
