@@ -135,6 +135,25 @@ TEST(FitMeasure, chamfered) {
     EXPECT_EQ(r.tiltedFaceFraction, 0);
 }
 
+// A line drawn on a flat side is captured where the wall has an edge along it, not where its faces have their middle, nor where its edges
+// cross it; one off the geometry is none.
+TEST(FitMeasure, faintLines) {
+    const PolyMesh mesh = cubeWall([](Vec3 p) { return p; });
+    const Surface surface = box(1);
+    const auto measured = [&](const Vec3& a, const Vec3& b) {
+        const FeatureGraph features = buildFeatureGraph(surface, {.lines = {{a, b}, {{0, 1}}, {}}});
+        return measureFit(mesh, buildCellFaces(mesh), SurfaceIndex(surface), features, {"body", "top"});
+    };
+    const FitReport along = measured({0.2, 0.5, 1}, {0.8, 0.5, 1});
+    EXPECT_NEAR(double(along.faintSamples), 4 * 6, 2);
+    EXPECT_EQ(along.faintCaptureFraction, 1);
+    EXPECT_EQ(along.featureCaptureFraction, 1);
+    EXPECT_EQ(measured({0.2, 0.55, 1}, {0.8, 0.55, 1}).faintCaptureFraction, 0);
+    EXPECT_EQ(measured({0.25, 0.3, 1}, {0.65, 0.7, 1}).faintCaptureFraction, 0);
+    EXPECT_EQ(measured({0.2, 0.5, 1.01}, {0.8, 0.5, 1.01}).faintSamples, 0);
+    EXPECT_EQ(fit(mesh, surface).faintSamples, 0);
+}
+
 // One node pulled 0.8 h out of the middle of a side tilts its four faces by 29 degrees, 2 h tilt them by 55;
 // the faces along the edges, whose centre is within h, are not counted.
 TEST(FitMeasure, tilted) {

@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::array overWall{0.3, 1.0}; // of h: a line seen from neither height over the wall is hidden,
 constexpr double hiddenBy = 0.05;        // of h: if it lies so far behind what is seen
+constexpr double overGeometry = 0.05;    // of h: a line drawn farther off the geometry is none of the wall's
 constexpr double near = 0.1;             // of h: an edge of the wall so near to a line is the line's,
 const double along = std::cos(30 * std::numbers::pi / 180); // if it turns from it by no more
 
@@ -64,7 +65,7 @@ void measureFaintCapture(const PolyMesh& mesh, const Wall& wall, const SurfaceIn
     const SurfaceIndex edgeIndex(edges);
     const auto counts = [&](const Vec3& p, std::uint32_t line, const WallPlace& at) {
         const auto isSeen = [&](double height) { return isSeenFrom(index, flowOver(wall, at, height * at.h), p, hiddenBy * at.h); };
-        return lines.isFaint[line] != 0 && std::any_of(overWall.begin(), overWall.end(), isSeen);
+        return lines.isFaint[line] != 0 && index.closest(p, overGeometry * at.h) && std::any_of(overWall.begin(), overWall.end(), isSeen);
     };
     const auto isCaptured = [&](const Vec3& p, std::uint32_t line, const WallPlace& at) {
         const Vec3 direction = directionOf(lines.segments, line);

@@ -21,7 +21,7 @@
 // sides folds by no more than a wall edge must. The share that has a wall edge, folded by more than 25 degrees, within 0.1 h.
 //
 // Faint edges: the lines that the geometry's user named, and edges over a feature angle of his below 40 degrees: a wall need not fold there.
-// The same samples, where any line of either kind that is near counts against "resolvable"; captured where an edge of the wall that runs
+// The same samples within 0.05 h of the geometry, where any line of either kind that is near counts against "resolvable"; captured where an edge of the wall that runs
 // along the line, within 30 degrees, is within 0.1 h.
 //
 // Borders: the same along the lines where two parts meet (border_lines.h), of samples that are seen from the flow 0.3 h
