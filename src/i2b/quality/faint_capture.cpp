@@ -1,15 +1,11 @@
 // How much of the lines at which the geometry folds little or not at all the wall has an edge along.
 #include "i2b/core/collect.h"
 #include "i2b/quality/line_capture.h"
-#include <algorithm>
-#include <array>
 #include <numbers>
 
 namespace i2b {
 namespace {
 
-constexpr std::array overWall{0.3, 1.0}; // of h: a line seen from neither height over the wall is hidden,
-constexpr double hiddenBy = 0.05;        // of h: if it lies so far behind what is seen
 constexpr double overGeometry = 0.05;    // of h: a line drawn farther off the geometry is none of the wall's
 constexpr double near = 0.1;             // of h: an edge of the wall so near to a line is the line's,
 const double along = std::cos(30 * std::numbers::pi / 180); // if it turns from it by no more
@@ -64,8 +60,7 @@ void measureFaintCapture(const PolyMesh& mesh, const Wall& wall, const SurfaceIn
     const Surface edges = edgesNear(mesh, wall, lines, lineIndex);
     const SurfaceIndex edgeIndex(edges);
     const auto counts = [&](const Vec3& p, std::uint32_t line, const WallPlace& at) {
-        const auto isSeen = [&](double height) { return isSeenFrom(index, flowOver(wall, at, height * at.h), p, hiddenBy * at.h); };
-        return lines.isFaint[line] != 0 && index.closest(p, overGeometry * at.h) && std::any_of(overWall.begin(), overWall.end(), isSeen);
+        return lines.isFaint[line] != 0 && index.closest(p, overGeometry * at.h) && flowThatSees(wall, index, at, p);
     };
     const auto isCaptured = [&](const Vec3& p, std::uint32_t line, const WallPlace& at) {
         const Vec3 direction = directionOf(lines.segments, line);

@@ -10,8 +10,6 @@
 namespace i2b {
 namespace {
 
-constexpr std::array overWall{0.3, 1.0}; // of h: an edge seen from neither height over the wall is hidden,
-constexpr double hiddenBy = 0.05;        // of h: if it lies so far behind what is seen
 constexpr double rimGap = 2;             // of h: a sheet beyond whose free edge something follows so near does not end there
 constexpr double beside = 0.1;           // of h: what is seen so far to both sides of an edge says whether it folds
 
@@ -65,7 +63,8 @@ Surface sharpSurface(const FeatureGraph& features, const Wall& wall, const Surfa
     Surface s;
     for (std::size_t i = 0; i < rims.size(); ++i) {
         const FeatureEdge& e = features.edges[i];
-        if (e.angle >= sharpAngle || rims[i]) addSegment(s, features.points[e.a], features.points[e.b]);
+        const bool isCrease = (e.kinds & bitOf(EdgeKind::crease)) != 0; // may fold by 40 degrees to the last bit
+        if ((e.angle >= sharpAngle && !isCrease) || rims[i]) addSegment(s, features.points[e.a], features.points[e.b]);
     }
     return s;
 }
@@ -78,11 +77,8 @@ void measureCapture(const PolyMesh& mesh, const Wall& wall, const SurfaceIndex& 
     const auto isReached = [&](const Vec3& p, std::uint32_t line, const WallPlace& at) {
         const auto& t = sharpEdges.triangles[line];
         const Vec3 tangent = normalized(sharpEdges.points[t[1]] - sharpEdges.points[t[0]]);
-        for (const double height : overWall) {
-            const Vec3 flow = flowOver(wall, at, height * at.h);
-            if (isSeenFrom(index, flow, p, hiddenBy * at.h)) return foldsUnder(index, flow, p, tangent, at.h);
-        }
-        return false;
+        const std::optional<Vec3> flow = flowThatSees(wall, index, at, p);
+        return flow && foldsUnder(index, *flow, p, tangent, at.h);
     };
     const LineSamples n = captureLines(
         mesh, wall, sharpEdges, sharp, isReached,

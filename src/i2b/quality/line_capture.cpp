@@ -2,11 +2,14 @@
 #include "i2b/core/parallel.h"
 #include "i2b/core/quantile.h"
 #include <algorithm>
+#include <array>
 
 namespace i2b {
 namespace {
 
 constexpr double inwards = 0.3; // of the way to the face's centre
+constexpr std::array overWall{0.3, 1.0}; // of h: what is seen from neither height over the wall is hidden,
+constexpr double hiddenBy = 0.05;        // of h: if it lies so far behind what is seen
 
 // The wall within reach of the lines, in triangles around the face centres (as OpenFOAM's areas are); faceOf tells
 // each triangle's face. The rest of a wall would cost more memory than all else here, and nothing asks for it.
@@ -147,6 +150,14 @@ Vec3 flowOver(const Wall& wall, const WallPlace& at, double height) {
 bool isSeenFrom(const SurfaceIndex& index, const Vec3& flow, const Vec3& place, double lastBit) {
     const double far = norm(place - flow);
     return far > 0 && !index.firstHit(flow, place, 1 - lastBit / far);
+}
+
+std::optional<Vec3> flowThatSees(const Wall& wall, const SurfaceIndex& index, const WallPlace& at, const Vec3& sample) {
+    for (const double height : overWall) {
+        const Vec3 flow = flowOver(wall, at, height * at.h);
+        if (isSeenFrom(index, flow, sample, hiddenBy * at.h)) return flow;
+    }
+    return {};
 }
 
 void addSegment(Surface& s, const Vec3& a, const Vec3& b) {

@@ -3,6 +3,7 @@
 #pragma once
 #include "i2b/quality/fit_wall.h"
 #include <functional>
+#include <optional>
 
 namespace i2b {
 
@@ -38,6 +39,9 @@ LineSamples captureLines(const PolyMesh& mesh, const Wall& wall, const Surface& 
 Vec3 flowOver(const Wall& wall, const WallPlace& at, double height);
 // Whether nothing of the geometry is in the way from the flow to a place, but for the last bit (m).
 bool isSeenFrom(const SurfaceIndex& index, const Vec3& flow, const Vec3& place, double lastBit);
+
+// The first of two places in the flow, 0.3 h and h over the nearest wall, from which a sample is seen or lies less than 0.05 h behind what is.
+std::optional<Vec3> flowThatSees(const Wall& wall, const SurfaceIndex& index, const WallPlace& at, const Vec3& sample);
 
 // Appends a segment as a triangle without area, which a SurfaceIndex takes like any other.
 void addSegment(Surface& s, const Vec3& a, const Vec3& b);
