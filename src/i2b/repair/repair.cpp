@@ -109,14 +109,12 @@ void Repairer::settle() {
         const std::int64_t before = summary_.moves;
         summary_.moves += optimiser_.mend(thin_ ? thinSweeps : mendSweeps);
         if (isClean()) return;
-        if (thin_) {
-            for (int i = 0; i < bendRounds && optimiser_.bend() > 0 && !isClean(); ++i) summary_.moves += optimiser_.mend(thinPause);
-            if (isClean()) return;
-            // A retreat makes columns no better: it takes whole regions off the wall.
-            summary_.moves += optimiser_.mend(mendSweeps, true);
-            if (isClean() || (summary_.moves == before && faults_.badCells().empty())) return;
-        }
-        stepBack(thin_ ? RetreatFrom::wrong : RetreatFrom::poor);
+        for (int i = 0; thin_ && i < bendRounds && optimiser_.bend() > 0 && !isClean(); ++i) summary_.moves += optimiser_.mend(thinPause);
+        if (isClean()) return;
+        // A few wall nodes off the geometry rather than a retreat, which takes whole regions off it and makes their columns no better.
+        summary_.moves += optimiser_.mend(mendSweeps, true);
+        if (isClean() || (thin_ && summary_.moves == before && faults_.badCells().empty())) return;
+        stepBack(thin_ || round + 1 < settleRounds ? RetreatFrom::wrong : RetreatFrom::poor);
     }
 }
 
