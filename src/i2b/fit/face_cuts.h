@@ -35,6 +35,10 @@ class FaceCutter {
     std::size_t linesFrom(std::int32_t crossing, const std::vector<CutRing>& pieces) const;
     // Does no line ask for it?
     bool isOptional(const CutPlace& p) const;
+    // Its place on the wall.
+    const Vec3& wallAt(const CutPlace& p, const EdgeCrossing* moved = nullptr) const {
+        return p.vertex >= 0 ? x_[std::size_t(p.vertex)] : crossingAt(p, moved).wall;
+    }
     // For corners of a piece that have too little height under the front.
     void wishRoom(const CutRing& piece, std::vector<RoomWish>& wishes) const;
 
@@ -56,9 +60,6 @@ class FaceCutter {
     const EdgeCrossing& crossingAt(const CutPlace& p, const EdgeCrossing* moved = nullptr) const {
         const EdgeCrossing& c = crossings_[std::size_t(p.crossing)];
         return moved && moved->edge == c.edge ? *moved : c;
-    }
-    const Vec3& wallAt(const CutPlace& p, const EdgeCrossing* moved = nullptr) const {
-        return p.vertex >= 0 ? x_[std::size_t(p.vertex)] : crossingAt(p, moved).wall;
     }
     double hAt(const CutPlace& p) const { return band_.h[std::size_t(p.vertex >= 0 ? p.vertex : crossings_[std::size_t(p.crossing)].p)]; }
     const Vec3& frontAt(const CutPlace& p, const EdgeCrossing* moved = nullptr) const {

@@ -15,6 +15,7 @@ constexpr int placesTried = 8; // equal parts of an edge of the front, at whose 
 constexpr std::array slides{0.0, 0.1, -0.1, 0.2, -0.2, 0.3, -0.3, 0.4, -0.4}; // of h: so far along its line,
 constexpr double goodCorner = 0.15; // scaled Jacobian: no farther than to have such corners,
 constexpr int placingRounds = 2;    // and again after those beside it have
+constexpr double stepAside = 0.04;  // of h: off an edge into the one of its faces that is cut
 constexpr std::size_t leastLines = 3; // that a corner beyond an edge must be at the end of
 
 class Inserter {
@@ -33,9 +34,11 @@ class Inserter {
     std::vector<RoomWish> roomWanted(const std::vector<FaceCuts>& cuts) const;
     std::vector<std::uint8_t> stepAsideWhereRefused(const std::vector<FaceCuts>& cuts);
     std::array<std::int32_t, 2> placesBeside(std::int32_t edge) const;
+    double cornerBeside(const EdgeCrossing& crossing, const std::vector<FaceCuts>& cuts) const;
     EdgeCrossing bestPlaceOf(const EdgeCrossing& crossing, const std::vector<FaceCuts>& cuts) const;
     bool mayKeepSome(const FaceCuts& cuts) const;
     bool prune(const std::vector<FaceCuts>& cuts);
+    void stepIntoCutFaces(const std::vector<FaceCuts>& cuts);
     void apply(const std::vector<FaceCuts>& cuts);
 
     Front& front_;
@@ -133,21 +136,22 @@ std::array<std::int32_t, 2> Inserter::placesBeside(std::int32_t edge) const {
     return places;
 }
 
+// The worst corner of the prisms at both sides of a crossing's edge.
+double Inserter::cornerBeside(const EdgeCrossing& crossing, const std::vector<FaceCuts>& cuts) const {
+    double corner = 1;
+    for (const std::int32_t face : placesBeside(crossing.edge))
+        if (face >= 0) corner = std::min(corner, cutter_.worstCorner(cuts[std::size_t(face)].pieces, crossing));
+    return corner;
+}
+
 // On the front as straight under its place on the wall as the edge allows, or at a share of it; on the wall where it is, or along the line as
 // little as will do: whichever gives the best corners, the first of equals.
 EdgeCrossing Inserter::bestPlaceOf(const EdgeCrossing& crossing, const std::vector<FaceCuts>& cuts) const {
-    const std::array<std::int32_t, 2> beside = placesBeside(crossing.edge);
     EdgeCrossing best = crossing;
-    const auto cornerOf = [&](const EdgeCrossing& c) {
-        double corner = 1;
-        for (const std::int32_t face : beside)
-            if (face >= 0) corner = std::min(corner, cutter_.worstCorner(cuts[std::size_t(face)].pieces, c));
-        return corner;
-    };
-    double bestCorner = cornerOf(crossing);
+    double bestCorner = cornerBeside(crossing, cuts);
     const auto look = [&](EdgeCrossing c, double t) {
         placeOnFront(band_, x_, c, t);
-        const double corner = cornerOf(c);
+        const double corner = cornerBeside(c, cuts);
         if (corner <= bestCorner || !isFree(index_, c)) return;
         bestCorner = corner, best = c;
     };
@@ -160,6 +164,42 @@ EdgeCrossing Inserter::bestPlaceOf(const EdgeCrossing& crossing, const std::vect
         if (bestCorner >= goodCorner) break;
     }
     return best;
+}
+
+// Where a cut ends at an edge whose other face goes on uncut, the prism there would have two sides in one plane, which counts as concave: a
+// little into the face that is cut, along its line, the vertex makes it convex. In their order, as each changes the corners of the next.
+void Inserter::stepIntoCutFaces(const std::vector<FaceCuts>& cuts) {
+    std::vector<Vec3> into(crossings_.size()); // from the vertex to the other ends of its cuts
+    std::vector<std::uint8_t> passed(crossings_.size(), 0);
+    for (const FaceCuts& c : cuts) {
+        for (const CutRing& piece : c.pieces) {
+            for (std::size_t i = 0, n = piece.size(); i < n; ++i) {
+                if (piece[i].crossing < 0) continue;
+                const auto at = static_cast<std::size_t>(piece[i].crossing);
+                if (!piece[i].isEnd) passed[at] = 1;
+                for (const CutPlace& next : {piece[(i + 1) % n], piece[(i + n - 1) % n]})
+                    if (piece[i].isEnd && next.star) into[at] += normalized(cutter_.wallAt(next) - crossings_[at].wall);
+            }
+        }
+    }
+    std::vector<EdgeCrossing> stepped(crossings_.size());
+    parallelFor(crossings_.size(), [&](std::size_t i) {
+        EdgeCrossing c = crossings_[i];
+        if (!c.alive || !passed[i] || into[i] == Vec3{} || c.corner >= 0) return;
+        const double step = stepAside * band_.h[std::size_t(c.p)];
+        if (c.kind != SnapKind::none) {
+            if (!slideAlong(index_, features_, c, dot(into[i], c.tangent) < 0 ? -step : step)) return;
+        } else {
+            const ClosestPoint on = index_.closest(c.wall + normalized(into[i]) * step, step);
+            if (!on) return;
+            c.wall = on.point;
+        }
+        placeOnFront(band_, x_, c, c.t);
+        if (isFree(index_, c)) stepped[i] = c;
+    }, 64);
+    for (std::size_t i = 0; i < crossings_.size(); ++i) {
+        if (stepped[i].alive && cornerBeside(stepped[i], cuts) >= std::min(cornerBeside(crossings_[i], cuts), goodCorner)) crossings_[i] = stepped[i];
+    }
 }
 
 void Inserter::apply(const std::vector<FaceCuts>& cuts) {
@@ -275,6 +315,7 @@ std::size_t Inserter::run() {
         });
     };
     while (prune(cuts)) cutAll([&](std::size_t i) { return isStale(cuts[i]); });
+    stepIntoCutFaces(cuts);
     apply(cuts);
     return front_.inserted.size();
 }

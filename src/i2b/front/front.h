@@ -45,7 +45,7 @@ struct Front {
             const Vec3 onEdge = first + (second - first) * t;
             return onEdge + (wall - onEdge) * lift;
         }
-        static constexpr double lift = 0.05; // share of the way to the wall
+        static constexpr double lift = 0.08; // share of the way to the wall
     };
     std::vector<Inserted> inserted;
     // Core points of the front in the middle of an edge of a coarser cell, with the ends of that edge: ascending.
