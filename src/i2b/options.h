@@ -23,6 +23,7 @@ struct GeometryOptions {
     std::vector<std::string> files;
     double scale = 1;                    // file unit to metres
     double featureAngle = 40;            // degrees; 180: no features but those named below
+    double creaseAngle = 6;              // degrees; folds over it, but not over featureAngle, that the wall follows; 180: none
     std::vector<std::string> featureLines{}; // OBJ files of lines and corners, in the unit of the geometry
     std::vector<std::string> featureParts{}; // names or regular expressions (whole name): their free edges and borders
     std::vector<FeatureBox> featureBoxes{};  // of boxes that overlap the last one counts

@@ -86,7 +86,7 @@ TEST(FeatureIndex, faintLines) {
     EXPECT_TRUE(named.closestFaint(onBorder, 0.1).found);
 }
 
-// Folds below the angle are creases, which are no lines; without sharp edges there are none.
+// Folds below the angle, and over that of creases, are such, which are no lines; without sharp edges there are none.
 TEST(FeatureIndex, creases) {
     const Vec3 onBorder{1, 0.5, 0};
     const FeatureIndex mild(buildFeatureGraph(folded(20), {}));
@@ -98,6 +98,8 @@ TEST(FeatureIndex, creases) {
     EXPECT_TRUE(mild.empty());
     EXPECT_FALSE(mild.closestCorner({1, 0, 0}, 0.1));
     for (const double degrees : {3.0, 50.0}) EXPECT_FALSE(FeatureIndex(buildFeatureGraph(folded(degrees), {})).hasCreases()) << degrees;
+    EXPECT_TRUE(FeatureIndex(buildFeatureGraph(folded(3), {.crease = 2})).hasCreases());
+    for (const double least : {25.0, 180.0}) EXPECT_FALSE(FeatureIndex(buildFeatureGraph(folded(20), {.crease = least})).hasCreases()) << least;
     EXPECT_FALSE(FeatureIndex(buildFeatureGraph(folded(20), {.angle = 180})).hasCreases());
     const FeatureBox none{{{-1, -1, -1}, {3, 3, 3}}, BoxEdges::none};
     EXPECT_FALSE(FeatureIndex(buildFeatureGraph(folded(20), {.boxes = {none}})).hasCreases());

@@ -19,6 +19,7 @@ Case everything() {
     o.geometry = {{"a \"quoted\".stl", "dir/b.obj"},
                   0.001,
                   1.0 / 3,
+                  2.5,
                   {"edges.obj", "dir/more, edges.obj"},
                   {"fin{1,2}", "body"},
                   {{{{-1, -2, -3}, {4, 5, 1.0 / 3}}, BoxEdges::all}, {{{0, 0, 0}, {1, 1, 1}}, BoxEdges::none}}};
@@ -62,6 +63,7 @@ void expectSame(const Options& a, const Options& b) {
     EXPECT_EQ(a.geometry.files, b.geometry.files);
     EXPECT_EQ(a.geometry.scale, b.geometry.scale);
     EXPECT_EQ(a.geometry.featureAngle, b.geometry.featureAngle);
+    EXPECT_EQ(a.geometry.creaseAngle, b.geometry.creaseAngle);
     EXPECT_EQ(a.geometry.featureLines, b.geometry.featureLines);
     EXPECT_EQ(a.geometry.featureParts, b.geometry.featureParts);
     expectSameItems(a.geometry.featureBoxes, b.geometry.featureBoxes);
@@ -233,11 +235,11 @@ TEST(CaseFile, TakesSizesAsTables) {
 
 // So may features; their files are relative to the case file, one text stands for a list of one.
 TEST(CaseFile, TakesFeaturesAsTable) {
-    const Case tables = parseCase("size = 1\n[feature]\nangle = 30\nlines = ['a.obj', '/data/b.obj']\npart = 'door'\n"
+    const Case tables = parseCase("size = 1\n[feature]\nangle = 30\ncrease-angle = 2\nlines = ['a.obj', '/data/b.obj']\npart = 'door'\n"
                                   "[[feature.box]]\nbox = [0, 0, 0, 1, 1, 1]\nedges = 'all'\n"
                                   "[[feature.box]]\nbox = [0, 0, 0, 2, 1, 1]\nedges = 'none'\n",
                                   "cases/car.toml");
-    const Case flat = parseCase("size = 1\nfeature-angle = 30\nfeature-lines = ['a.obj', '/data/b.obj']\n"
+    const Case flat = parseCase("size = 1\nfeature-angle = 30\ncrease-angle = 2\nfeature-lines = ['a.obj', '/data/b.obj']\n"
                                 "feature-part = ['door']\n"
                                 "feature-box = [{ box = [0, 0, 0, 1, 1, 1], edges = 'all' },"
                                 " { box = [0, 0, 0, 2, 1, 1], edges = 'none' }]\n",
@@ -245,8 +247,8 @@ TEST(CaseFile, TakesFeaturesAsTable) {
     expectSame(tables.options, flat.options);
     EXPECT_THAT(tables.options.geometry.featureLines, ::testing::ElementsAre("cases/a.obj", "/data/b.obj"));
     EXPECT_EQ(tables.options.geometry.featureBoxes.at(0).edges, BoxEdges::all);
-    EXPECT_EQ(tables.lines.at("feature-lines"), 4);
-    EXPECT_EQ(tables.lines.at("feature-box"), 6);
+    EXPECT_EQ(tables.lines.at("feature-lines"), 5);
+    EXPECT_EQ(tables.lines.at("feature-box"), 7);
     expectSame(parseCase(formatCase(tables), "").options, tables.options);
 }
 

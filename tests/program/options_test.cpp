@@ -41,6 +41,7 @@ TEST(Validate, NamesEachBrokenOption) {
         {"scale", [](Options& o) { o.geometry.scale = 0; }},
         {"scale", [](Options& o) { o.geometry.scale = -1; }},
         {"feature-angle", [](Options& o) { o.geometry.featureAngle = 181; }},
+        {"crease-angle", [](Options& o) { o.geometry.creaseAngle = -1; }},
         {"feature-lines", [](Options& o) { o.geometry.featureLines = {""}; }},
         {"feature-part", [](Options& o) { o.geometry.featureParts = {"wheel", "wheel("}; }},
         {"feature-box", [](Options& o) { o.geometry.featureBoxes = {{{{0, 0, 0}, {1, 1, 0}}, BoxEdges::all}}; }},

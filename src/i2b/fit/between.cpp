@@ -29,7 +29,6 @@ constexpr double alongWholly = 0.95; // cosine: if it does not all but run along
 constexpr double overGeometry = 0.05; // of h: a faint line may be so far off the geometry,
 constexpr double faintApart = 0.5;  // if no other line comes so near to its place
 constexpr double faintAside = 0.1;  // at least so far beside it
-const double sameSide = std::cos(leastCrease * degree); // feet that differ by less are not parted by a crease
 constexpr double offCrease = 0.01;  // of h: a way that comes nearer to a crease follows the geometry,
 constexpr double creaseApart = 0.5; // and one so near to a line is left to that
 constexpr double creaseReach = 0.5; // of the feet's distance: so near to the middle a crease parts feet whose planes do not meet,
@@ -214,7 +213,7 @@ Between faintBetween(const SurfaceIndex& index, const FeatureIndex& features, co
 
 Between creaseBetween(const SurfaceIndex& index, const FeatureIndex& features, const Foot& footA, const Foot& footB, const Vec3& a, const Vec3& b,
                       const Vec3& fluid, double h) {
-    if (!features.hasCreases() || !footA.found || !footB.found || dot(footA.normal, footB.normal) > sameSide) return {};
+    if (!features.hasCreases() || !footA.found || !footB.found || dot(footA.normal, footB.normal) > features.leastCrease()) return {};
     double t = 0;
     const auto closest = [&](const Vec3& q, double radius) { return features.closestCrease(q, radius); };
     const FeatureIndex::Line crease = lineUnderWay(closest, a, b, h, t);

@@ -89,7 +89,7 @@ double largestFold(const FeatureSoup& soup, const Side* sides, std::size_t n) {
     return largest;
 }
 
-FeatureEdge judge(const FeatureSoup& soup, const Side* sides, std::size_t n, double limit,
+FeatureEdge judge(const FeatureSoup& soup, const Side* sides, std::size_t n, const FoldLimits& limits,
                   const std::vector<bool>& isNamed) {
     FeatureEdge edge{sides[0].edge.a, sides[0].edge.b, 0, 0};
     const double angle = largestFold(soup, sides, n);
@@ -100,7 +100,7 @@ FeatureEdge judge(const FeatureSoup& soup, const Side* sides, std::size_t n, dou
         border = border || part != soup.partOf[sides[0].triangle];
         named = named || (static_cast<std::size_t>(part) < isNamed.size() && isNamed[static_cast<std::size_t>(part)]);
     }
-    edge.kinds |= kindOfFold(angle, limit);
+    edge.kinds |= kindOfFold(angle, limits);
     if (n == 1) edge.kinds |= bitOf(EdgeKind::free);
     if (n > 2) edge.kinds |= bitOf(EdgeKind::nonManifold);
     if (border) edge.kinds |= bitOf(EdgeKind::partBorder);
@@ -110,12 +110,12 @@ FeatureEdge judge(const FeatureSoup& soup, const Side* sides, std::size_t n, dou
 
 } // namespace
 
-std::uint8_t kindOfFold(double fold, double limit) {
-    if (fold > limit) return bitOf(EdgeKind::sharp);
-    return limit < 180 && fold > leastCrease && fold <= mostCrease ? bitOf(EdgeKind::crease) : 0;
+std::uint8_t kindOfFold(double fold, const FoldLimits& limits) {
+    if (fold > limits.sharp) return bitOf(EdgeKind::sharp);
+    return limits.sharp < 180 && fold > limits.crease && fold <= mostCrease ? bitOf(EdgeKind::crease) : 0;
 }
 
-RawVector<FeatureEdge> judgeEdges(const FeatureSoup& soup, double limit, const std::vector<bool>& isNamed,
+RawVector<FeatureEdge> judgeEdges(const FeatureSoup& soup, const FoldLimits& limits, const std::vector<bool>& isNamed,
                                     FeatureGraph& graph) {
     const RawVector<Side> sides = collectSides(soup, graph);
     const RawVector<std::size_t> start = collect<std::size_t>(sides.size() + 1, [&](std::size_t i, const auto& put) {
@@ -123,7 +123,7 @@ RawVector<FeatureEdge> judgeEdges(const FeatureSoup& soup, double limit, const s
     });
     RawVector<FeatureEdge> edges(start.size() - 1);
     parallelFor(edges.size(), [&](std::size_t i) {
-        edges[i] = judge(soup, &sides[start[i]], start[i + 1] - start[i], limit, isNamed);
+        edges[i] = judge(soup, &sides[start[i]], start[i + 1] - start[i], limits, isNamed);
     });
     return edges;
 }

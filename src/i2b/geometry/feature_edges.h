@@ -13,14 +13,15 @@ inline double fold(const Vec3& u, const Vec3& v) {
     return std::atan2(norm(cross(u, v)), -dot(u, v)) * (180 / std::numbers::pi);
 }
 
-// The kind that an edge's fold gives it where the limit is this: sharp, crease or none. Degrees.
-std::uint8_t kindOfFold(double fold, double limit);
+// Degrees over which a fold is sharp, and else a crease.
+struct FoldLimits { double sharp, crease; };
+std::uint8_t kindOfFold(double fold, const FoldLimits& limits);
 inline constexpr std::uint8_t foldKinds = bitOf(EdgeKind::sharp) | bitOf(EdgeKind::crease);
 
 // Steps 3 to 5 of features.cpp: every edge of the soup with its kinds and angle, those without a kind too; a < b,
-// ascending. limit: degrees above which it is sharp. isNamed: per part, whether its free edges and borders are named.
+// ascending. isNamed: per part, whether its free edges and borders are named.
 // Counts in the graph the needles that it bridges.
-RawVector<FeatureEdge> judgeEdges(const FeatureSoup& soup, double limit, const std::vector<bool>& isNamed,
+RawVector<FeatureEdge> judgeEdges(const FeatureSoup& soup, const FoldLimits& limits, const std::vector<bool>& isNamed,
                                     FeatureGraph& graph);
 
 } // namespace i2b

@@ -64,15 +64,15 @@ void keepFeatures(const FeatureSoup& soup, const RawVector<FeatureEdge>& all, co
 } // namespace
 
 FeatureOptions featureOptions(const GeometryOptions& geometry, const FeatureLines& lines) {
-    return {geometry.featureAngle, 0, geometry.featureParts, geometry.featureBoxes, lines};
+    return {geometry.featureAngle, 0, geometry.featureParts, geometry.featureBoxes, lines, geometry.creaseAngle};
 }
 
 FeatureGraph buildFeatureGraph(const Surface& surface, const FeatureOptions& options) {
     FeatureGraph graph;
-    graph.weldTolerance = options.weldTolerance;
+    graph.weldTolerance = options.weldTolerance, graph.crease = options.crease;
     FeatureSoup soup = weldSoup(surface, options.lines, graph);
     RawVector<FeatureEdge> all =
-        judgeEdges(soup, options.angle, namedParts(surface.parts, options.parts, graph.notes), graph);
+        judgeEdges(soup, {options.angle, options.crease}, namedParts(surface.parts, options.parts, graph.notes), graph);
     countFaults(soup, all, graph);
     addLines(soup, all);
     applyBoxes(options.boxes, graph.weldTolerance, soup, all);

@@ -13,6 +13,9 @@
 
 namespace i2b {
 
+// No fold over this is a crease, degrees. Where nothing is to be sharp, as the angle is 180, none at all is.
+inline constexpr double mostCrease = 40;
+
 struct FeatureOptions {
     double angle = 40;        // degrees between the triangles' planes above which an edge is sharp; 180: none
     double weldTolerance = 0; // m; 0: 1e-6 of the diagonal of the bounds
@@ -22,13 +25,12 @@ struct FeatureOptions {
     // decides there, and edges are cut where boxes end.
     std::vector<FeatureBox> boxes = {};
     FeatureLines lines = {}; // features wherever they are; no box takes them away
+    double crease = 6;       // degrees; folds over it that are not sharp are creases
 };
 
 // What the options of a run ask for; lines: what their files hold.
 FeatureOptions featureOptions(const GeometryOptions& geometry, const FeatureLines& lines);
 
-// Degrees between which folds not over the limit are creases; where nothing is to be sharp, as the limit is 180, there are none.
-inline constexpr double leastCrease = 6, mostCrease = 40;
 inline constexpr double boxAngle = 1; // degrees; flat faces of single-precision triangles fold by less
 
 enum class EdgeKind : std::uint8_t {
@@ -38,7 +40,7 @@ enum class EdgeKind : std::uint8_t {
     partBorder = 8,  // triangles of different parts
     named = 16,      // named by the user: a line from a file, or what bounds a named part
     rim = 32,        // free, and the sheet ends there in the open; see markRims() in rims.h
-    crease = 64      // a milder fold, over leastCrease, that a mesh follows where nothing else is near
+    crease = 64      // a milder fold that a mesh follows where nothing else is near
 };
 
 constexpr std::uint8_t bitOf(EdgeKind kind) { return static_cast<std::uint8_t>(kind); }
@@ -57,6 +59,7 @@ struct FeatureEdge {
 
 struct FeatureGraph {
     double weldTolerance = 0;       // m, the one used
+    double crease = 0;              // degrees, over which a fold may be one
     std::vector<Vec3> points;       // m, welded; only those that an edge uses or that are corners
     std::vector<FeatureEdge> edges; // a < b, ascending
     // Points where not exactly two edges of lineKinds meet, or they turn over the angle, and the points of

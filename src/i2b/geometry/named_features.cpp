@@ -66,7 +66,7 @@ double angleBy(BoxEdges rule) { return rule == BoxEdges::all ? boxAngle : 180; }
 void judgeBy(const Rule& rule, FeatureEdge& edge) {
     if (!rule) return; // as the angle says
     edge.kinds &= static_cast<std::uint8_t>(~foldKinds);
-    edge.kinds |= kindOfFold(double(edge.angle), angleBy(*rule));
+    edge.kinds |= kindOfFold(double(edge.angle), {angleBy(*rule), mostCrease});
     if (*rule == BoxEdges::none) edge.kinds &= static_cast<std::uint8_t>(~bitOf(EdgeKind::named));
 }
 

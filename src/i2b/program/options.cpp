@@ -52,6 +52,7 @@ void checkName(const char* key, const std::string& part, Checker& check) {
 
 void checkFeatures(const GeometryOptions& geometry, Checker& check) {
     check.within("feature-angle", geometry.featureAngle, 0, 180);
+    check.within("crease-angle", geometry.creaseAngle, 0, 180);
     for (const std::string& file : geometry.featureLines)
         if (file.empty()) check.add("feature-lines", "a file has no name", "name an OBJ file of lines");
     for (const std::string& part : geometry.featureParts) checkName("feature-part", part, check);
