@@ -73,7 +73,7 @@ class Repairer {
     void settle();
     void mendSevere();
     void mendLastFaces(bool mayThinLeave);
-    void mendFlatCells();
+    bool mendFlatCells();
     std::vector<std::int32_t> foldedCells() const;
     RepairSummary finish();
 
@@ -148,9 +148,9 @@ void Repairer::mendLastFaces(bool mayThinLeave) {
 }
 
 // Determinants go with the height of thin cells: only those under the limit count where few are, and of these only those that the last
-// resort would not help. Undone where that leaves as many of them, faces that do not divide among them.
-void Repairer::mendFlatCells() {
-    if (thinFrom_ >= mesh_.cells || !(DictionaryBounds(limits_).determinant > 0)) return;
+// resort would not help. Undone where that leaves as many of them, faces that do not divide among them. Gives whether anything moved.
+bool Repairer::mendFlatCells() {
+    if (thinFrom_ >= mesh_.cells || !(DictionaryBounds(limits_).determinant > 0)) return false;
     const auto flatFaces = [&] { return facesOfFlatCells(mesh_, cellFaces_, thinFrom_, limits_.determinant, mostFlat); };
     const auto left = [&](const std::vector<std::int32_t>& flat) {
         std::vector<std::int32_t> all;
@@ -159,14 +159,15 @@ void Repairer::mendFlatCells() {
     };
     const std::vector<std::int32_t> flat = flatFaces();
     const std::vector<std::int32_t> before = flat.empty() ? flat : left(flat);
-    if (before.empty() || before.size() > fewFlat) return;
+    if (before.empty() || before.size() > fewFlat) return false;
     FaultCount was, now;
     faults_.poorCells(was);
     optimiser_.track();
     optimiser_.mendFlatAt(thinCellsAt(mesh_, before, thinFrom_), flatSweeps);
     faults_.poorCells(now);
-    if (faults_.badCells().empty() && now.all <= was.all && left(flatFaces()).size() < before.size()) optimiser_.keep();
-    else optimiser_.undo();
+    const bool isBetter = faults_.badCells().empty() && now.all <= was.all && left(flatFaces()).size() < before.size();
+    isBetter ? optimiser_.keep() : optimiser_.undo();
+    return isBetter;
 }
 
 std::vector<std::int32_t> Repairer::foldedCells() const {
@@ -196,7 +197,7 @@ RepairSummary Repairer::run(bool mayThinLeave) {
     mendSevere();
     optimiser_.mendTets(tetSweeps);
     mendLastFaces(mayThinLeave);
-    mendFlatCells();
+    if (mendFlatCells()) mendLastFaces(mayThinLeave); // what is left of them may be faces that do not divide
     summary_.foldedCells = foldedCells();
     summary_.unmended = faults_.poorFaces();
     return finish();
