@@ -1,5 +1,6 @@
 // Proves: where a round wall is given in facets wider than a cell, the mesh follows the creases between them and lies nearer to it,
-// and sharp edges keep their nodes.
+// and sharp edges keep their nodes; the angle from which it does is asked for.
+#include "i2b/samples/sample.h"
 #include "pipeline/stages_run.h"
 #include <gtest/gtest.h>
 #include <numbers>
@@ -28,10 +29,8 @@ Surface drum() {
 }
 
 struct Fitted : ToFront {
-    explicit Fitted(bool withCreases) : ToFront(drum(), stagesOptions()) {
-        FeatureGraph g = graph;
-        if (!withCreases) std::erase_if(g.edges, [](const FeatureEdge& e) { return (e.kinds & bitOf(EdgeKind::crease)) != 0; });
-        fitFront(front, lattice, *painted.index, g, FitOptions{}, Context());
+    Fitted(const Surface& soup, double creaseAngle) : ToFront(soup, stagesOptions()) {
+        fitFront(front, lattice, *painted.index, buildFeatureGraph(soup, {.crease = creaseAngle}), FitOptions{}, Context());
     }
     double meanOff() const { // of the middles of faces, in h
         double sum = 0;
@@ -67,12 +66,22 @@ struct Fitted : ToFront {
 };
 
 TEST(Creases, AreFollowed) {
-    const Fitted with(true), without(false);
+    const Fitted with(drum(), 6), without(drum(), 180);
     EXPECT_EQ(with.front.validate(), "");
     EXPECT_LT(with.meanOff(), 0.4 * without.meanOff());
     EXPECT_GT(with.followed(bitOf(EdgeKind::crease)), 0.9);
     EXPECT_LT(without.followed(bitOf(EdgeKind::crease)), 0.7);
     EXPECT_GE(with.followed(bitOf(EdgeKind::sharp)), 0.99);
+}
+
+// Of a ball of fine facets, which fold by 4 degrees, faces stay whole quadrilaterals, until one asks for less.
+TEST(Creases, FromTheAngleAskedFor) {
+    const Surface ball = makeSample("sphere");
+    const Fitted smooth(ball, 6), near(ball, 2);
+    EXPECT_EQ(near.front.validate(), "");
+    EXPECT_TRUE(smooth.front.inserted.empty());
+    EXPECT_FALSE(near.front.inserted.empty());
+    EXPECT_LT(near.meanOff(), 0.7 * smooth.meanOff());
 }
 
 } // namespace
