@@ -53,9 +53,7 @@ void run(const std::string& geometry, double size, const std::filesystem::path& 
     Front front = buildFront(lattice, startThickness);
     std::filesystem::create_directories(folder);
     writeSurface(front, front.front, folder / "front-start.ply");
-    FeatureOptions sharp;
-    sharp.angle = options.geometry.featureAngle;
-    const FeatureGraph features = buildFeatureGraph(grid->surface, sharp);
+    const FeatureGraph features = buildFeatureGraph(grid->surface, featureOptions(options.geometry, grid->featureLines));
     fitFront(front, lattice, *grid->index, features, options.fit, context);
     writeSurface(front, front.front, folder / "front-smoothed.ply");
     writeSurface(front, wallPoints(front), folder / "front-wall.ply");

@@ -1,10 +1,10 @@
 // The last guard of validity. The fit judges cells by their corners, which is nearly, not quite, OpenFOAM's measure: nodes
 // of wrong and poor cells are moved by that measure (optimise.h). Where a cell still has no positive volume or a face
 // pyramid of it points the wrong way, the points around it step back towards the start of the fit, where every cell is
-// right by construction, and so on until none is left. The slope of the retreat is bounded, so that it ends smoothly. For faces
-// still over the limits of quality single wall nodes leave the geometry first, as a node that is a little off the wall is worth less
-// than a mesh that passes its checks; the retreat comes last, as far as it helps, since it takes whole regions along. At the end wall nodes go on to their features and onto the geometry where no limit
-// forbids it.
+// right by construction, and so on until none is left. The slope of the retreat is bounded, so that it ends smoothly. For
+// faces still over the limits of quality single wall nodes leave the geometry first, as a node that is a little off the
+// wall is worth less than a mesh that passes its checks; the retreat comes last, as far as it helps, since it takes whole
+// regions along. At the end wall nodes go on to their features and onto the geometry where no limit forbids it.
 #pragma once
 #include "i2b/quality/dictionary_limits.h"
 #include "i2b/repair/optimise.h"
