@@ -83,11 +83,11 @@ TEST(TetShare, IsNoBetterThanTheReport) {
     EXPECT_GT(poor, 200);
 }
 
-// The glance that settles most faces says the same as the close look.
+// The glance that settles most faces says the same as the close look, and so does a look that ends where there is no hope.
 TEST(TetShare, IsCutOffAtWhatIsEnough) {
     std::mt19937 random(11);
     std::uniform_real_distribution<double> off(-0.5, 0.5), height(0.02, 1);
-    int cut = 0, whole = 0;
+    int cut = 0, whole = 0, hoped = 0, given = 0;
     for (int i = 0; i < 20000; ++i) {
         std::array<Vec3, 4> face = square(0);
         for (Vec3& p : face) p += Vec3{off(random), off(random), 0.4 * off(random)};
@@ -100,9 +100,20 @@ TEST(TetShare, IsCutOffAtWhatIsEnough) {
             EXPECT_NEAR(tetShare(mesh, 0, shape.centre, shape.area, below, neighbour, enough), std::min(share, enough), 1e-12) << "face " << i;
             ++(share > enough ? cut : whole);
         }
+        for (const double hopeless : {-1.5, -0.1, 0.0, 0.2}) {
+            const double soon = tetShare(mesh, 0, shape.centre, shape.area, below, neighbour, 1, hopeless);
+            if (share > hopeless) {
+                EXPECT_EQ(soon, share) << "face " << i;
+            } else {
+                EXPECT_LE(soon, hopeless) << "face " << i;
+            }
+            ++(share > hopeless ? hoped : given);
+        }
     }
     EXPECT_GT(cut, 5000);
     EXPECT_GT(whole, 5000);
+    EXPECT_GT(hoped, 5000);
+    EXPECT_GT(given, 5000);
 }
 
 TEST(FaceShape, OfAQuadrangleIsThatOfAPolygon) {

@@ -87,6 +87,27 @@ TEST(MeshFaults, FewFaultsOfThinCellsCount) {
     }
 }
 
+// Where cells are so thin that their determinants are under the limit anyway, fewer faces that do not divide are few; weights as ever.
+TEST(MeshFaults, FlatCellsNeedNotDivide) {
+    std::mt19937 random(3);
+    PolyMesh mesh = test::shakenBlock(8, 0.05, random);
+    mesh.points[364] += Vec3{0.97, 0.2, 0.1};
+    const Rows cellFaces = buildCellFaces(mesh);
+    QualityLimits limits;
+    limits.faceWeight = 0.3;
+    const MeshFaults upright(mesh, cellFaces, limits, 0);
+    limits.determinant = 2; // more than that of a cube
+    const std::vector<std::int32_t> undivided = upright.undividedFaces();
+    ASSERT_GT(undivided.size(), std::size_t(2)); // of 512 cells
+    const MeshFaults flat(mesh, cellFaces, limits, 0);
+    EXPECT_TRUE(flat.undividedFaces().empty());
+    EXPECT_TRUE(flat.countsThinWeights());
+    const std::int32_t thinFrom = mesh.owner[static_cast<std::size_t>(undivided.front())] + 1; // those of other cells count
+    const MeshFaults some(mesh, cellFaces, limits, thinFrom);
+    const std::vector<std::int32_t> left = some.undividedFaces();
+    EXPECT_TRUE(std::ranges::binary_search(left, undivided.front()));
+}
+
 std::vector<std::int32_t> cellsThatUse(const PolyMesh& mesh, const std::vector<std::int32_t>& points) {
     std::set<std::int32_t> cells;
     for (std::int32_t f = 0; f < mesh.faces(); ++f) {

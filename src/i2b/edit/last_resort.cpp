@@ -12,6 +12,7 @@ namespace {
 using Index = std::size_t;
 constexpr int mostRounds = 16, mostOrders = 4;
 constexpr std::size_t fewFaces = 2000;  // to be helped: other orders are tried
+constexpr std::size_t fewFirst = 200;   // that come first in these
 constexpr std::size_t fewLeft = 4;      // that nothing has helped, or beside one: pairs of changes are tried
 
 using Trial = LocalEdits::Trial;
@@ -104,7 +105,7 @@ Edited seekInOrders(const PolyMesh& mesh, const Rows& cellFaces, const std::vect
         if (faces.size() <= fewFaces) now.left = facesLeft(mesh, faces, limits, now.edits);
         std::vector<std::int32_t> next;
         std::ranges::set_union(first, now.left, std::back_inserter(next));
-        const bool isLast = next.size() == first.size();
+        const bool isLast = next.size() == first.size() || next.size() > fewFirst;
         first = std::move(next);
         if (!best || now.left.size() < best->left.size()) best.emplace(std::move(now));
         if (isLast) break;

@@ -92,10 +92,10 @@ class Face {
         return v_.size() == 4 && norm2(at(0) - at(1) + at(2) - at(3)) <= flat2 * norm2(at(0) - at(2));
     }
     double width(const Vec3& area) const { return norm2(area) < widest2_ ? widthOf(area, reach2_, enough_) : enough_; }
-    double aroundCentre() const {
+    double aroundCentre(double hopeless) const {
         double worst = enough_;
         Vec3 here = at(0);
-        for (Index i = 1; i <= v_.size(); ++i) {
+        for (Index i = 1; i <= v_.size() && worst > hopeless; ++i) {
             const Vec3 next = at(i), twice = cross(here, next);
             const double turn = shareBelow(enough_ + leastTwist, dot(twice, across_), norm2(twice));
             worst = std::min(worst, share(here, twice));
@@ -150,7 +150,7 @@ class Face {
 } // namespace
 
 double tetShare(const PolyMesh& mesh, std::int32_t face, const Vec3& centre, const Vec3& area, const Vec3& owner, const Vec3* neighbour,
-                double enough) {
+                double enough, double hopeless) {
     const auto v = mesh.face(face);
     const auto at = [&](Index i) { return mesh.points[Index(v[i])] - centre; };
     if (v.size() == 4 && QuadLook(centre, area, owner, neighbour, enough).isClear({at(0), at(1), at(2), at(3)})) return enough;
@@ -158,8 +158,10 @@ double tetShare(const PolyMesh& mesh, std::int32_t face, const Vec3& centre, con
     const Face f(mesh, face, centre, area, owner, neighbour, enough);
     const double width = f.width(area);
     if (f.isParallelogram()) return std::max(least, width);
-    const double around = std::min({width, f.aroundCentre(), f.atCorners(area)});
-    return std::max(least, std::min(around, f.bestFan(around)));
+    double share = std::min(width, f.aroundCentre(hopeless));
+    if (share > hopeless) share = std::min(share, f.atCorners(area));
+    if (share > hopeless) share = std::min(share, f.bestFan(share));
+    return std::max(least, share);
 }
 
 } // namespace i2b

@@ -4,6 +4,7 @@
 #pragma once
 #include "i2b/quality/mesh_geometry.h"
 #include <algorithm>
+#include <limits>
 
 namespace i2b {
 
@@ -17,9 +18,9 @@ inline constexpr double leastTwist = 0.02;
 // normal and the way from cell to cell, from the limit of the twist on; and the sine of the turn at a reflex corner, from the limit of
 // concavity down; and the area of the face and of its triangles over the square of its reach. At least -2.
 // centre: of the face; area: its vector, m^2; neighbour: the other cell's centre, or null. Shares over `enough` are given as
-// that.
+// that, those up to `hopeless` as any up to it.
 double tetShare(const PolyMesh& mesh, std::int32_t face, const Vec3& centre, const Vec3& area, const Vec3& owner, const Vec3* neighbour,
-                double enough = 1);
+                double enough = 1, double hopeless = -std::numeric_limits<double>::infinity());
 
 // Of the lesser pyramid of a face with a cell's centre: by how much it is over the least volume (m^3, not negative), as a share of that.
 inline double pyramidShare(const FaceShape& face, const Vec3& owner, const Vec3* neighbour, double least) {

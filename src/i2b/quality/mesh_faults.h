@@ -20,7 +20,7 @@ class MeshFaults {
   public:
     // Keeps references. limits: those of orthogonality, skewness, weight, volume ratio and determinant count. Cells from
     // thinFrom on may be as thin as they are: their determinants do not count, nor weights and volume ratios among them, nor faces
-    // that do not divide, unless these are few.
+    // that do not divide, unless these are few: fewer where many cells are so thin that they are beyond limits of determinants anyway.
     MeshFaults(const PolyMesh& mesh, const Rows& cellFaces, const QualityLimits& limits,
                std::int32_t thinFrom = std::numeric_limits<std::int32_t>::max());
 
@@ -55,6 +55,7 @@ class MeshFaults {
     std::vector<std::int32_t> cellsAround(const std::vector<std::int32_t>& seeds);
     bool hasMoved(std::int32_t face) const;
     void lookAtThin();
+    bool areFlat() const;
     // Those that count.
     int flagsOf(std::size_t face) const { return faceFlags_[face] & (mesh_.owner[face] < thinFrom_ ? 0xff : thinFlags_); }
 

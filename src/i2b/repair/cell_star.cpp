@@ -2,6 +2,7 @@
 #include "i2b/quality/face_tets.h"
 #include "i2b/quality/measures.h"
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace i2b {
@@ -12,6 +13,7 @@ constexpr double counts = 0.9;       // of a limit: what is better does not coun
 constexpr double leastPyramid = 0.05; // cosine between a face's normal and the way to its centre from the cell's; of thin
                                       // cells three times the pyramid's volume over the cell's, half for each face of a box
 constexpr double leastTets = 0.08;    // share of a face's tetrahedra
+constexpr double margin = 1e-9;       // of such a share, for what sums lose
 constexpr double flat = 1e-9;        // a pyramid below this cosine is wrong, as in mesh_faults.cpp
 constexpr double wrong = 30;         // of a cell inside out
 constexpr Index none = ~Index(0);
@@ -146,13 +148,13 @@ void CellStar::judgeFace(Index i, Badness& out) {
     add(out, std::min(wrong, limits_.volumeRatio / std::max(values.ratio, 1e-300)));
 }
 
-double CellStar::tetShareOf(Index i) {
+double CellStar::tetShareOf(Index i, double hopeless) {
     const Face& face = faces_[i];
     const FaceShape& shape = shapeOf(i);
     const Vec3& own = momentsOf(face.owner, mesh_.owner[Index(face.face)]).centre;
     const bool inner = face.face < mesh_.internalFaces();
     const Vec3* nei = inner ? &momentsOf(face.neighbour, mesh_.neighbour[Index(face.face)]).centre : nullptr;
-    const double share = tetShare(mesh_, face.face, shape.centre, shape.area, own, nei, leastTets);
+    const double share = tetShare(mesh_, face.face, shape.centre, shape.area, own, nei, leastTets, hopeless);
     return std::min(share, undividedShare + pyramidShare(shape, own, nei, limits_.pyramidVolume));
 }
 
@@ -259,7 +261,7 @@ TetLack CellStar::judgeTets(double most) {
     }
     for (const std::uint32_t i : tetOrder_) {
         if (!(out.sum < most)) break;
-        addTets(out, tetShareOf(i));
+        addTets(out, tetShareOf(i, leastTets - std::sqrt(most - out.sum) - margin)); // with less the sum is too much
     }
     return out;
 }

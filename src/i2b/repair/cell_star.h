@@ -70,7 +70,7 @@ class CellStar {
     void look(std::size_t i, Badness& out) { i < cells_.size() ? judgeCell(i, out) : judgeFace(i - cells_.size(), out); }
     template <class TooBad>
     Badness judge(const TooBad& tooBad);
-    double tetShareOf(std::size_t i);
+    double tetShareOf(std::size_t i, double hopeless = -std::numeric_limits<double>::infinity()); // that and `hopeless` as tetShare()
     // Worked out once a turn, where they are asked for.
     const FaceShape& shapeOf(std::size_t i);
     std::span<const FaceShape> shapesOf(std::size_t cell);

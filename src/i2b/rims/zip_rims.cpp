@@ -11,6 +11,7 @@ namespace {
 
 using Index = std::size_t;
 constexpr int shapings = 20; // rounds in which columns are moved
+constexpr Index sample = 16; // zips side by side: where none of so many can be shaped, as under very thin layers, none of the others is tried
 
 class Zipper {
   public:
@@ -20,10 +21,13 @@ class Zipper {
 
   private:
     void judgeChanged();
-    void shapeWorse();
+    bool isNoWorse(Index i) const { return star_.isSound(zips_[i]) && star_.isNoWorse(zips_[i], before_[i], limits_); }
+    bool shapeWorse(bool isFirst);
+    void shape(const std::vector<Index>& turn);
     double excessOf(Index i) const;
     std::vector<std::uint8_t> worstOfWorse() const;
     bool openWorse();
+    void openAll();
     void markChanged(const Zip& zip) {
         for (const std::int32_t c : star_.withNeighbours(zip.star)) isChanged_[Index(c)] = true;
     }
@@ -41,13 +45,24 @@ class Zipper {
 void Zipper::judgeChanged() {
     parallelFor(zips_.size(), [&](Index i) {
         if (std::ranges::none_of(zips_[i].star, [&](std::int32_t c) { return isChanged_[Index(c)]; })) return;
-        isWorse_[i] = !star_.isSound(zips_[i]) || !star_.isNoWorse(zips_[i], before_[i], limits_);
+        isWorse_[i] = !isNoWorse(i);
     }, 1);
     isChanged_.assign(isChanged_.size(), false);
 }
 
-// Those that share no cell side by side, the others in later turns, in their order.
-void Zipper::shapeWorse() {
+// Zips that share no cell, side by side.
+void Zipper::shape(const std::vector<Index>& turn) {
+    std::vector<std::vector<std::pair<std::int32_t, Vec3>>> places(turn.size());
+    parallelFor(turn.size(), [&](Index k) { places[k] = shapeZip(star_, zips_[turn[k]], limits_); }, 1);
+    for (Index k = 0; k < turn.size(); ++k) {
+        if (places[k].empty()) continue;
+        for (const auto& [point, place] : places[k]) places_[point] = place, star_.apply({point, -1, place});
+        markChanged(zips_[turn[k]]);
+    }
+}
+
+// All in turns, in their order; whether there is hope for any.
+bool Zipper::shapeWorse(bool isFirst) {
     std::vector<Index> left;
     for (Index i = 0; i < zips_.size(); ++i)
         if (isWorse_[i] && star_.isSound(zips_[i])) left.push_back(i);
@@ -63,15 +78,16 @@ void Zipper::shapeWorse() {
             for (const std::int32_t c : around) isTaken[Index(c)] = true;
             turn.push_back(i);
         }
-        std::vector<std::vector<std::pair<std::int32_t, Vec3>>> places(turn.size());
-        parallelFor(turn.size(), [&](Index k) { places[k] = shapeZip(star_, zips_[turn[k]], limits_); }, 1);
-        for (Index k = 0; k < turn.size(); ++k) {
-            if (places[k].empty()) continue;
-            for (const auto& [point, place] : places[k]) places_[point] = place, star_.apply({point, -1, place});
-            markChanged(zips_[turn[k]]);
+        shape(turn);
+        if (isFirst && turn.size() >= sample) {
+            std::vector<std::uint8_t> isGood(turn.size());
+            parallelFor(turn.size(), [&](Index k) { isGood[k] = isNoWorse(turn[k]); }, 1);
+            if (std::ranges::count(isGood, 1) == 0) return false;
         }
+        isFirst = false;
         left = std::move(later);
     }
+    return true;
 }
 
 // How much worse a zip leaves its cells.
@@ -123,6 +139,11 @@ bool Zipper::openWorse() {
     return true;
 }
 
+void Zipper::openAll() {
+    zips_.clear(), places_.clear();
+    star_.use(zips_, places_);
+}
+
 std::int64_t Zipper::run() {
     if (zips_.empty()) return 0;
     parallelFor(zips_.size(), [&](Index i) { before_[i] = star_.before(zips_[i], limits_); }, 1);
@@ -130,7 +151,12 @@ std::int64_t Zipper::run() {
     int round = 0;
     do {
         judgeChanged();
-        if (round++ < shapings) shapeWorse(), judgeChanged();
+        if (round++ >= shapings) continue;
+        if (!shapeWorse(round == 1)) {
+            openAll();
+            break;
+        }
+        judgeChanged();
     } while (openWorse());
     return static_cast<std::int64_t>(zips_.size());
 }
