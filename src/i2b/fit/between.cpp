@@ -213,7 +213,7 @@ Between faintBetween(const SurfaceIndex& index, const FeatureIndex& features, co
 
 Between creaseBetween(const SurfaceIndex& index, const FeatureIndex& features, const Foot& footA, const Foot& footB, const Vec3& a, const Vec3& b,
                       const Vec3& fluid, double h) {
-    if (!features.hasCreases() || !footA.found || !footB.found || dot(footA.normal, footB.normal) > features.leastCrease()) return {};
+    if (!features.hasCreases() || !footA.found || !footB.found || dot(footA.normal, footB.normal) > features.creaseCosine()) return {};
     double t = 0;
     const auto closest = [&](const Vec3& q, double radius) { return features.closestCrease(q, radius); };
     const FeatureIndex::Line crease = lineUnderWay(closest, a, b, h, t);

@@ -45,7 +45,7 @@ FeatureIndex::Line placeOn(const Surface& segments, const ClosestPoint& c) {
 
 } // namespace
 
-FeatureIndex::FeatureIndex(const FeatureGraph& graph, Creases creases) : leastCrease_(std::cos(graph.crease * std::numbers::pi / 180)) {
+FeatureIndex::FeatureIndex(const FeatureGraph& graph, Creases creases) : creaseCosine_(std::cos(graph.crease * std::numbers::pi / 180)) {
     const auto isLine = [](const FeatureEdge& e) { return (e.kinds & lineKinds) != 0; };
     const auto isCrease = [&](const FeatureEdge& e) { return creases == Creases::kept && !isLine(e) && (e.kinds & bitOf(EdgeKind::crease)) != 0; };
     const auto countOf = [&](const auto& is) { return static_cast<std::size_t>(std::ranges::count_if(graph.edges, is)); };

@@ -25,7 +25,7 @@ class FeatureIndex {
     Line closestFaint(const Vec3& q, double radius) const; // of the faint ones
     // Creases are no lines: nothing else here counts them.
     bool hasCreases() const { return creaseIndex_ != nullptr; }
-    double leastCrease() const { return leastCrease_; } // the cosine of the fold over which there may be one
+    double creaseCosine() const { return creaseCosine_; } // the cosine of the fold over which there may be one
     Line closestCrease(const Vec3& q, double radius) const;
     Line closestCrease(const Vec3& q, double radius, float leastFold) const; // of those that fold by more, degrees
     // Comes another line within radius of this one's point, and nowhere so near to its tangent as aside?
@@ -42,7 +42,7 @@ class FeatureIndex {
     std::vector<float> creaseFold_;             // degrees, of creases_
     std::vector<std::uint8_t> isFaintCorner_;   // of corners_
     bool hasFaint_ = false;
-    double leastCrease_;
+    double creaseCosine_;
     std::unique_ptr<SurfaceIndex> lineIndex_, creaseIndex_, cornerIndex_;
 };
 

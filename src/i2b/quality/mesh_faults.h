@@ -34,6 +34,7 @@ class MeshFaults {
     const QualityLimits& limits() const { return limits_; }
     std::int32_t thinFrom() const { return thinFrom_; }
     bool countsThinWeights() const { return (thinFlags_ & lowWeight) != 0; }
+    bool countsThinUndivided() const { return (thinFlags_ & undivided) != 0; }
 
     // Cells without a positive volume, or with a face pyramid that points the wrong way or is next to nothing.
     std::vector<std::int32_t> badCells() const;

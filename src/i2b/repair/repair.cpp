@@ -140,6 +140,7 @@ void Repairer::mendLastFaces(bool mayThinLeave) {
         optimiser_.mendTetsOffWall(left, offSweeps);
         left = facesLeft();
     }
+    if (!faults_.countsThinUndivided()) return; // a few beside so many are not worth the nodes that this takes off the wall
     // What helps one face may be in the way of another's help.
     for (int round = 0; round < backRounds && !left.empty(); ++round) {
         if (stepBackFrom(left, {mesh_, cellFaces_, faults_, front_, lattice_, startThickness_, limits_}, optimiser_) == 0) break;
