@@ -19,7 +19,7 @@ constexpr double clearShare = 2 * undividedShare; // of tetrahedra: faces that a
 constexpr Index together = 32; // cells that a thread measures anew in a row
 constexpr double mostThin = 0.02; // faces for each thin cell that may have a fault of one kind for it to count
 constexpr double mostFlat = 0.002; // the same of faces that do not divide, where
-constexpr double flatShare = 0.01; // so many of the thin cells are so thin that their determinants are under the limit;
+constexpr double flatShare = 0.05; // so many of the thin cells are so thin that their determinants are under the limit;
 constexpr Index sampled = 16;      // of so many one is asked
 
 bool isBad(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::span<const FaceShape> shapes, std::int32_t cell,

@@ -11,7 +11,8 @@ namespace {
 
 using Index = std::size_t;
 constexpr int shapings = 20; // rounds in which columns are moved
-constexpr Index sample = 16; // zips side by side: where none of so many can be shaped, as under very thin layers, none of the others is tried
+constexpr Index sample = 16;  // zips side by side: where of so many
+constexpr Index oneIn = 20;   // fewer can be shaped, as under very thin layers, none of the others is tried
 
 class Zipper {
   public:
@@ -82,7 +83,7 @@ bool Zipper::shapeWorse(bool isFirst) {
         if (isFirst && turn.size() >= sample) {
             std::vector<std::uint8_t> isGood(turn.size());
             parallelFor(turn.size(), [&](Index k) { isGood[k] = isNoWorse(turn[k]); }, 1);
-            if (std::ranges::count(isGood, 1) == 0) return false;
+            if (std::ranges::count(isGood, 1) * static_cast<std::ptrdiff_t>(oneIn) < std::ssize(turn)) return false;
         }
         isFirst = false;
         left = std::move(later);
