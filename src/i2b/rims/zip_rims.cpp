@@ -12,7 +12,7 @@ namespace {
 using Index = std::size_t;
 constexpr int shapings = 20; // rounds in which columns are moved
 constexpr Index sample = 16;  // zips side by side: where of so many
-constexpr Index oneIn = 20;   // fewer can be shaped, as under very thin layers, none of the others is tried
+constexpr Index oneIn = 20;   // fewer than one in so many can be shaped, as under very thin layers, none of the others is tried
 
 class Zipper {
   public:
@@ -27,8 +27,7 @@ class Zipper {
     void shape(const std::vector<Index>& turn);
     double excessOf(Index i) const;
     std::vector<std::uint8_t> worstOfWorse() const;
-    bool openWorse();
-    void openAll();
+    bool open(const std::vector<std::uint8_t>& opens);
     void markChanged(const Zip& zip) {
         for (const std::int32_t c : star_.withNeighbours(zip.star)) isChanged_[Index(c)] = true;
     }
@@ -62,7 +61,7 @@ void Zipper::shape(const std::vector<Index>& turn) {
     }
 }
 
-// All in turns, in their order; whether there is hope for any.
+// All in turns, in their order; whether there is hope for others, which the first turn of all tells.
 bool Zipper::shapeWorse(bool isFirst) {
     std::vector<Index> left;
     for (Index i = 0; i < zips_.size(); ++i)
@@ -118,10 +117,9 @@ std::vector<std::uint8_t> Zipper::worstOfWorse() const {
     return found;
 }
 
-bool Zipper::openWorse() {
+bool Zipper::open(const std::vector<std::uint8_t>& opens) {
     Index kept = 0;
     std::map<std::int32_t, Vec3> places;
-    const std::vector<std::uint8_t> opens = worstOfWorse();
     for (Index i = 0; i < zips_.size(); ++i) {
         if (opens[i]) {
             markChanged(zips_[i]);
@@ -140,11 +138,6 @@ bool Zipper::openWorse() {
     return true;
 }
 
-void Zipper::openAll() {
-    zips_.clear(), places_.clear();
-    star_.use(zips_, places_);
-}
-
 std::int64_t Zipper::run() {
     if (zips_.empty()) return 0;
     parallelFor(zips_.size(), [&](Index i) { before_[i] = star_.before(zips_[i], limits_); }, 1);
@@ -152,13 +145,15 @@ std::int64_t Zipper::run() {
     int round = 0;
     do {
         judgeChanged();
-        if (round++ >= shapings) continue;
-        if (!shapeWorse(round == 1)) {
-            openAll();
-            break;
-        }
+        if (round >= shapings) continue;
+        const bool isHopeless = !shapeWorse(round == 0);
         judgeChanged();
-    } while (openWorse());
+        round = isHopeless ? shapings : round + 1;
+        if (!isHopeless) continue;
+        const std::vector<std::uint8_t> worse = isWorse_;
+        open(worse);
+        judgeChanged();
+    } while (open(worstOfWorse()));
     return static_cast<std::int64_t>(zips_.size());
 }
 
