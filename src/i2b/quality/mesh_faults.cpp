@@ -18,9 +18,9 @@ constexpr double doubtful = 20 * undividedShare; // of tetrahedra: up to there t
 constexpr double clearShare = 2 * undividedShare; // of tetrahedra: faces that a glance finds over that need no look
 constexpr Index together = 32; // cells that a thread measures anew in a row
 constexpr double mostThin = 0.02; // faces for each thin cell that may have a fault of one kind for it to count
-constexpr double mostFlat = 0.002; // the same of faces that do not divide, where
-constexpr double flatShare = 0.05; // so many of the thin cells are so thin that their determinants are under the limit;
-constexpr Index sampled = 16;      // of so many one is asked
+constexpr double mostThinner = 0.002; // the same of faces that do not divide, where
+constexpr double lackingShare = 0.05; // so many of the thin cells are so thin that their determinants are under the limit;
+constexpr Index sampled = 16;         // of so many one is asked
 
 bool isBad(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::span<const FaceShape> shapes, std::int32_t cell,
            const CellMoments& moments) {
@@ -97,26 +97,23 @@ void MeshFaults::lookAtThin() {
         found[0] += (faceFlags_[f] & (lowWeight | lowRatio)) != 0;
         found[1] += (faceFlags_[f] & undivided) != 0;
     });
-    const double cells = mesh_.cells - thinFrom_;
-    if (static_cast<double>(found[0]) > mostThin * cells) thinFlags_ &= ~(lowWeight | lowRatio);
-    if (static_cast<double>(found[1]) > (areFlat() ? mostFlat : mostThin) * cells) thinFlags_ &= ~undivided;
+    const auto areOver = [&](Index faces, double most) { return static_cast<double>(faces) > most * (mesh_.cells - thinFrom_); };
+    if (areOver(found[0], mostThin)) thinFlags_ &= ~(lowWeight | lowRatio);
+    if (areOver(found[1], mostThin) || (areOver(found[1], mostThinner) && thinLackDeterminants())) thinFlags_ &= ~undivided;
 }
 
 // Are thin cells so thin that they are beyond the limit of determinants for their height alone?
-bool MeshFaults::areFlat() const {
-    struct Count { Index cells = 0, flat = 0; };
+bool MeshFaults::thinLackDeterminants() const {
     const Index n = (Index(mesh_.cells - thinFrom_) + sampled - 1) / sampled;
     const auto count = [&](Index begin, Index end) {
         CellFaceShapes shapes(mesh_);
-        Count c;
-        for (Index i = begin; i < end; ++i) {
-            const std::int32_t cell = thinFrom_ + static_cast<std::int32_t>(i * sampled);
-            ++c.cells, c.flat += cellFullness(shapes.of(cellFaces_[cell])) < limits_.determinant;
-        }
-        return c;
+        Index lacking = 0;
+        for (Index i = begin; i < end; ++i)
+            lacking += cellFullness(shapes.of(cellFaces_[thinFrom_ + static_cast<std::int32_t>(i * sampled)])) < limits_.determinant;
+        return lacking;
     };
-    const Count all = orderedReduce(n, Count{}, count, [](Count a, const Count& b) { return Count{a.cells + b.cells, a.flat + b.flat}; });
-    return static_cast<double>(all.flat) > flatShare * static_cast<double>(all.cells);
+    const Index lacking = orderedReduce(n, Index(0), count, [](Index a, Index b) { return a + b; });
+    return static_cast<double>(lacking) > lackingShare * static_cast<double>(n);
 }
 
 void MeshFaults::measureCellAt(std::int32_t cell, CellFaceShapes& faceShapes) {

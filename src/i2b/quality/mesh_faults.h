@@ -56,7 +56,7 @@ class MeshFaults {
     std::vector<std::int32_t> cellsAround(const std::vector<std::int32_t>& seeds);
     bool hasMoved(std::int32_t face) const;
     void lookAtThin();
-    bool areFlat() const;
+    bool thinLackDeterminants() const;
     // Those that count.
     int flagsOf(std::size_t face) const { return faceFlags_[face] & (mesh_.owner[face] < thinFrom_ ? 0xff : thinFlags_); }
 

@@ -80,9 +80,9 @@ bool Zipper::shapeWorse(bool isFirst) {
         }
         shape(turn);
         if (isFirst && turn.size() >= sample) {
-            std::vector<std::uint8_t> isGood(turn.size());
-            parallelFor(turn.size(), [&](Index k) { isGood[k] = isNoWorse(turn[k]); }, 1);
-            if (std::ranges::count(isGood, 1) * static_cast<std::ptrdiff_t>(oneIn) < std::ssize(turn)) return false;
+            parallelFor(turn.size(), [&](Index k) { isWorse_[turn[k]] = !isNoWorse(turn[k]); }, 1);
+            const auto good = static_cast<Index>(std::ranges::count_if(turn, [&](Index i) { return !isWorse_[i]; }));
+            if (good * oneIn < turn.size()) return false;
         }
         isFirst = false;
         left = std::move(later);
@@ -145,13 +145,11 @@ std::int64_t Zipper::run() {
     int round = 0;
     do {
         judgeChanged();
-        if (round >= shapings) continue;
-        const bool isHopeless = !shapeWorse(round == 0);
-        judgeChanged();
-        round = isHopeless ? shapings : round + 1;
-        if (!isHopeless) continue;
-        const std::vector<std::uint8_t> worse = isWorse_;
-        open(worse);
+        if (round++ >= shapings) continue;
+        if (!shapeWorse(round == 1)) {
+            open(std::vector(isWorse_));
+            round = shapings;
+        }
         judgeChanged();
     } while (open(worstOfWorse()));
     return static_cast<std::int64_t>(zips_.size());
