@@ -140,9 +140,9 @@ void MeshFaults::measureFaceAt(std::int32_t face) {
     const double mostSkew = neighbour ? limits_.skewness : std::min(limits_.skewness, limits_.boundarySkewness);
     if (faceSkewness(mesh_, face, shape, own.centre, neighbour, mostSkew) > mostSkew) flags |= skew;
     const double share = tetShare(mesh_, face, shape.centre, shape.area, own.centre, neighbour, doubtful);
-    // Two things that are each well enough may leave tetrahedra of no quality.
+    // Two things that are each well enough may leave tetrahedra of no quality; of a triangle tetShare() knows its width alone.
     const auto isPoor = [&] {
-        return limits_.tetQuality > 0 && share < doubtful && tetErrors(mesh_, mesh_.face(face), shape.centre, own.centre, neighbour, tets_) > 0;
+        return limits_.tetQuality > 0 && (share < doubtful || mesh_.face(face).size() == 3) && tetErrors(mesh_, mesh_.face(face), shape.centre, own.centre, neighbour, tets_) > 0;
     };
     if (share < undividedShare || pyramidShare(shape, own.centre, neighbour, limits_.pyramidVolume) < 0 || isPoor()) flags |= undivided;
     faceFlags_.set(Index(face), static_cast<std::uint8_t>(flags));
