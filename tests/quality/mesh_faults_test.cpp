@@ -178,6 +178,54 @@ TEST(MeshFaults, UndividedFacesAreTheReports) {
     EXPECT_GT(twisted, 50);
 }
 
+// A prism that leans far over from a narrow triangle, which is wide enough by itself: the report names it, so it is to be mended.
+TEST(MeshFaults, NarrowTrianglesOfLeaningCellsAreNamed) {
+    const std::vector<Vec3> points{{0, 0, 0}, {1e-2, 0, 0}, {5e-3, 8e-5, 0}, {0, 0.04, 1e-4}, {1e-2, 0.04, 1e-4}, {5e-3, 0.04 + 8e-5, 1e-4}};
+    const PolyMesh mesh = test::meshOfCells(points, {{{0, 2, 1}, {3, 4, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}}});
+    const QualityReport report = measureQuality(mesh);
+    const auto tets = std::ranges::find(report.dictionary, "minTetQuality", &DictionaryCheck::key);
+    ASSERT_NE(tets, report.dictionary.end());
+    ASSERT_GE(tets->faces, 2); // both triangles
+    QualityLimits asked;
+    asked.tetQuality = 1.5e-15;
+    const Rows cellFaces = buildCellFaces(mesh);
+    const std::vector<std::int32_t> named = MeshFaults(mesh, cellFaces, asked).undividedFaces();
+    EXPECT_EQ(std::ranges::count_if(named, [&](std::int32_t f) { return mesh.face(f).size() == 3; }), 2);
+}
+
+// Where only some points may move the cells at these are looked at as ever, and no others; what changes later is followed as well.
+TEST(MeshFaults, OnlyWherePointsMayMove) {
+    std::size_t spared = 0;
+    for (unsigned seed = 0; seed < 10; ++seed) {
+        std::mt19937 random(seed);
+        PolyMesh mesh = block(random);
+        const Rows cellFaces = buildCellFaces(mesh);
+        std::vector<std::uint8_t> mayMove(mesh.points.size(), 0);
+        std::vector<std::int32_t> movable;
+        for (int i = 0; i < 3; ++i) movable.push_back(static_cast<std::int32_t>(random() % mesh.points.size()));
+        for (const std::int32_t p : movable) mayMove[static_cast<std::size_t>(p)] = 1;
+        const std::vector<std::int32_t> cells = cellsThatUse(mesh, movable);
+        const auto areThere = [&](const std::vector<std::int32_t>& some) { return std::ranges::includes(cells, some); };
+        MeshFaults near(mesh, cellFaces, strict(), mesh.cells, mayMove);
+        for (int round = 0; round < 2; ++round) {
+            const MeshFaults all(mesh, cellFaces, strict());
+            std::vector<std::int32_t> expected; // faces of these cells; others are of no account
+            for (const std::int32_t f : all.poorFaces()) {
+                const bool isIn = std::ranges::binary_search(cells, mesh.owner[static_cast<std::size_t>(f)]) ||
+                                  (f < mesh.internalFaces() && std::ranges::binary_search(cells, mesh.neighbour[static_cast<std::size_t>(f)]));
+                isIn ? expected.push_back(f) : void(++spared);
+            }
+            EXPECT_TRUE(std::ranges::includes(near.poorFaces(), expected)) << "seed " << seed;
+            std::vector<std::int32_t> bad = all.badCells();
+            std::erase_if(bad, [&](std::int32_t c) { return !areThere({c}); });
+            EXPECT_TRUE(std::ranges::includes(near.badCells(), bad));
+            for (const std::int32_t p : movable) mesh.points[static_cast<std::size_t>(p)] += Vec3{0.7, -0.6, 0.4};
+            near.update(cells);
+        }
+    }
+    EXPECT_GT(spared, 100u);
+}
+
 // Columns of two cells, thin and narrow, where two shares that are each well enough leave tetrahedra of no quality: such faces
 // are named where that quality is asked for, and few others.
 TEST(MeshFaults, TetrahedraOfNoQualityAreNamed) {

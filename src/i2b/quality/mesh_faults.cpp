@@ -1,11 +1,13 @@
 #include "i2b/quality/mesh_faults.h"
 #include "i2b/core/collect.h"
+#include "i2b/core/flags.h"
 #include "i2b/quality/face_tets.h"
 #include "i2b/quality/glances.h"
 #include "i2b/quality/measures.h"
 #include "i2b/quality/tally.h"
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -33,21 +35,46 @@ bool isBad(const PolyMesh& mesh, std::span<const std::int32_t> faces, std::span<
     return false;
 }
 
+constexpr std::uint8_t beside = 1, within = 2; // a cell that has a point that may move, and one that shares a face with such a cell
+
+// Per cell one of these, or 0; empty where all points may move.
+std::vector<std::uint8_t> cellsAtMovable(const PolyMesh& mesh, const std::vector<std::uint8_t>& mayMove) {
+    std::vector<std::uint8_t> near;
+    if (mayMove.empty()) return near;
+    near.assign(Index(mesh.cells), 0);
+    const auto raise = [&](std::int32_t cell, std::uint8_t to) { std::atomic_ref(near[Index(cell)]).store(to, std::memory_order_relaxed); };
+    const auto isWithin = [&](std::int32_t cell) { return std::atomic_ref(near[Index(cell)]).load(std::memory_order_relaxed) == within; };
+    const Index internal = mesh.neighbour.size();
+    parallelFor(Index(mesh.faces()), [&](Index f) {
+        const auto v = mesh.face(static_cast<std::int32_t>(f));
+        if (std::ranges::none_of(v, [&](std::int32_t p) { return mayMove[Index(p)] != 0; })) return;
+        raise(mesh.owner[f], within);
+        if (f < internal) raise(mesh.neighbour[f], within);
+    }, 4096);
+    parallelFor(internal, [&](Index f) {
+        const std::int32_t own = mesh.owner[f], next = mesh.neighbour[f];
+        if (isWithin(own) == isWithin(next)) return;
+        raise(isWithin(own) ? next : own, beside);
+    }, 4096);
+    return near;
+}
+
 } // namespace
 
-MeshFaults::MeshFaults(const PolyMesh& mesh, const Rows& cellFaces, const QualityLimits& limits, std::int32_t thinFrom)
+MeshFaults::MeshFaults(const PolyMesh& mesh, const Rows& cellFaces, const QualityLimits& limits, std::int32_t thinFrom, const std::vector<std::uint8_t>& mayMove)
     : mesh_(mesh), cellFaces_(cellFaces), limits_(limits), thinFrom_(thinFrom),
       severeCosine_(std::cos(limits.nonOrthogonality * std::numbers::pi / 180)), tets_(limits.tetQuality), moments_(Index(mesh.cells)),
       cellFlags_(Index(mesh.cells)), faceFlags_(Index(mesh.faces())), moved_(mesh.points.size(), 0),
       changed_(Index(mesh.cells), 0) {
-    measureCells();
-    measureFaces();
+    const std::vector<std::uint8_t> near = cellsAtMovable(mesh, mayMove);
+    measureCells(near);
+    measureFaces(near);
     lookAtThin();
 }
 
-// Of all cells. Where a glance finds every face's centre clearly behind all others' planes, the cell's own centre is behind them by
+// Where a glance finds every face's centre clearly behind all others' planes, the cell's own centre is behind them by
 // over 1/24 of that cosine (planarCosine), so that no pyramid is next to nothing.
-void MeshFaults::measureCells() {
+void MeshFaults::measureCells(const std::vector<std::uint8_t>& near) {
     HexBounds thick = openHexBounds;
     thick.determinant = limits_.determinant;
     parallelChunks(moments_.size(), 2048, [&](Index begin, Index end, Index) {
@@ -58,6 +85,7 @@ void MeshFaults::measureCells() {
             moments_[Index(cell)] = (cell < thinFrom_ ? hexes : thinHexes).moments(lane);
         };
         for (Index c = begin; c < end; ++c) {
+            if (!near.empty() && near[c] == 0) continue;
             const auto cell = static_cast<std::int32_t>(c);
             if (!hexes.isHex(cellFaces_[cell])) closely(cell);
             else (cell < thinFrom_ ? hexes : thinHexes).add(cell, clear, closely);
@@ -66,11 +94,11 @@ void MeshFaults::measureCells() {
     });
 }
 
-// Of all faces. With S the least of V^2 / L^6, V six times the volume of a tetrahedron and L twice the reach from the face's
+// With S the least of V^2 / L^6, V six times the volume of a tetrahedron and L twice the reach from the face's
 // centre to its vertices and the cells' centres, no height is under 2 sqrt(S) of the apex's own, and no width under 4 sqrt(S)
 // but for its scale: over S = (share / 2)^2 tetShare() is over that share where no corner is reflex and the twist has as much to
 // spare; and the quality of tetrahedra, which goes with S squared, is far over 1e-15.
-void MeshFaults::measureFaces() {
+void MeshFaults::measureFaces(const std::vector<std::uint8_t>& near) {
     constexpr double margin = 1.01;
     QuadBounds bounds = openQuadBounds;
     bounds.cosine = severeCosine_, bounds.weight = limits_.faceWeight, bounds.ratio = limits_.volumeRatio;
@@ -82,8 +110,11 @@ void MeshFaults::measureFaces() {
         QuadGlance quads(mesh_, moments_.data(), bounds);
         const auto closely = [&](Index f) { measureFaceAt(static_cast<std::int32_t>(f)); };
         const auto clear = [](Index, const QuadBatch&, Index) {};
+        const auto isNear = [&](Index f) {
+            return near.empty() || near[Index(mesh_.owner[f])] == within || (f < mesh_.neighbour.size() && near[Index(mesh_.neighbour[f])] == within);
+        };
         for (Index f = begin; f < end; ++f)
-            if (!quads.add(f, clear, closely)) closely(f);
+            if (isNear(f) && !quads.add(f, clear, closely)) closely(f);
         quads.finish(clear, closely);
     });
 }

@@ -21,8 +21,9 @@ class MeshFaults {
     // Keeps references. limits: those of orthogonality, skewness, weight, volume ratio and determinant count. Cells from
     // thinFrom on may be as thin as they are: their determinants do not count, nor weights and volume ratios among them, nor faces
     // that do not divide, unless these are few: fewer where many cells are so thin that they are beyond limits of determinants anyway.
+    // mayMove: per point 1 where it may; cells and faces all of whose points stay are taken to be good, and not looked at. Empty: all are.
     MeshFaults(const PolyMesh& mesh, const Rows& cellFaces, const QualityLimits& limits,
-               std::int32_t thinFrom = std::numeric_limits<std::int32_t>::max());
+               std::int32_t thinFrom = std::numeric_limits<std::int32_t>::max(), const std::vector<std::uint8_t>& mayMove = {});
 
     // After points have moved. seeds: cells among which every moved point has one that uses it.
     void update(const std::vector<std::int32_t>& movedPoints, const std::vector<std::int32_t>& seeds);
@@ -30,7 +31,7 @@ class MeshFaults {
     // Of the same the moments alone, for moves that are judged by these; update() is to follow.
     void follow(const std::vector<std::int32_t>& cells);
 
-    const CellMoments* moments() const { return moments_.data(); } // of all cells
+    const CellMoments* moments() const { return moments_.data(); } // of all cells with a point that may move, and those beside them
     const QualityLimits& limits() const { return limits_; }
     std::int32_t thinFrom() const { return thinFrom_; }
     bool countsThinWeights() const { return (thinFlags_ & lowWeight) != 0; }
@@ -49,8 +50,8 @@ class MeshFaults {
   private:
     enum CellFlag : std::uint8_t { bad = 1, lowDeterminant = 2 };
     enum FaceFlag : std::uint8_t { nonOrthogonal = 1, skew = 2, lowWeight = 4, lowRatio = 8, undivided = 16 };
-    void measureCells();
-    void measureFaces();
+    void measureCells(const std::vector<std::uint8_t>& near);
+    void measureFaces(const std::vector<std::uint8_t>& near);
     void measureCellAt(std::int32_t cell, CellFaceShapes& shapes);
     void measureFaceAt(std::int32_t face);
     std::vector<std::int32_t> cellsAround(const std::vector<std::int32_t>& seeds);

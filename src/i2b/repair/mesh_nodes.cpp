@@ -55,6 +55,14 @@ void MeshNodes::nodesOf(std::int32_t point, std::vector<MeshNode>& out) const {
     }
 }
 
+std::vector<std::uint8_t> MeshNodes::mayMove(std::size_t points) const {
+    std::vector<std::uint8_t> may(points, 0);
+    std::fill(may.begin() + front_.corePoints, may.end(), std::uint8_t(1));
+    for (const std::int32_t p : points_) may[Index(p)] = 1;
+    for (const std::int32_t p : front_.movedPoints) may[Index(p)] = 1;
+    return may;
+}
+
 Vec3 MeshNodes::place(const MeshNode& node) const {
     if (node.kind == MeshNode::core) return front_.movedTo[Index(node.id)];
     if (node.kind == MeshNode::wall) return front_.wall(Index(node.id));

@@ -26,6 +26,7 @@ class MeshNodes {
     std::size_t vertexOf(std::int32_t layerPoint) const { return layers_.vertexOfPoint(static_cast<std::size_t>(layerPoint - core_)); }
     // The nodes that a mesh point hangs on; appends none for a fixed one.
     void nodesOf(std::int32_t point, std::vector<MeshNode>& out) const;
+    std::vector<std::uint8_t> mayMove(std::size_t points) const; // per mesh point: has it such nodes?
     Vec3 place(const MeshNode& node) const;  // m
     double h(const MeshNode& node) const;    // m, size of the cells around
     std::uint8_t outside(const MeshNode& node) const; // as Front::outside
