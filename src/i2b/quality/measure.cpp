@@ -71,12 +71,6 @@ void listChecks(Measurement& m) {
     add("lowVolRatioFaces", Kind::faces, t.lowVolRatioFaces, failing(t.lowVolRatioFaces));
 }
 
-void measurePointFaces(Measurement& m) {
-    const Rows pointFaces = buildPointFaces(m.mesh);
-    measurePoints(m, pointFaces);
-    measureFaceFaces(m, pointFaces);
-}
-
 Box pointBox(std::span<const Vec3> points) {
     return orderedReduce(
         points.size(), Box{},
@@ -103,7 +97,8 @@ QualityReport measureQuality(const PolyMesh& mesh, const QualityLimits& limits, 
     m.report.box = pointBox(mesh.points);
     measureDirections(m);
     measureAlignment(m);
-    measurePointFaces(m); // before there is any other table as large
+    measurePoints(m);
+    measureFaceFaces(m);
     m.cellFaces = buildCellFaces(mesh);
     measureCells(m);
     measureZones(m);

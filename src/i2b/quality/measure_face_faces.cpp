@@ -1,11 +1,13 @@
 // Pairs of faces that share points: all of them (duplicates), or some that do not follow each other on both
 // faces.
-#include "i2b/core/flags.h"
+#include "i2b/core/collect.h"
+#include "i2b/core/rows.h"
 #include "i2b/quality/measure_steps.h"
+#include "i2b/quality/odd_points.h"
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <compare>
+#include <tbb/parallel_sort.h>
 
 namespace i2b {
 namespace {
@@ -114,46 +116,69 @@ bool sharedInStep(Face a, Face b, std::vector<std::array<Index, 2>>& shared) {
     return up || down;
 }
 
-void checkFace(const PolyMesh& mesh, const Rows& pointFaces, std::int32_t f, SharedCounts& counts,
-               PairPart& part) {
-    std::vector<std::array<Index, 2>> positions;
-    const Face face = mesh.face(f);
-    counts.clear();
-    for (const std::int32_t p : face) {
-        const std::span<const std::int32_t> users = pointFaces[p];
-        for (auto it = users.rbegin(); it != users.rend() && *it > f; ++it) counts.add(*it);
-    }
-    bool duplicate = false, outOfStep = false;
-    counts.forEachShared([&](std::int32_t g, std::int32_t shared) {
-        const Face other = mesh.face(g);
-        const auto n = static_cast<Index>(shared);
-        if (n == other.size() || n == face.size()) {
+// What a face has with others, told once for each.
+class FacePairs {
+  public:
+    FacePairs(const PolyMesh& mesh, PairPart& part) : mesh_(mesh), part_(part) {}
+
+    void begin() { duplicate_ = outOfStep_ = false; }
+    // shared: how many points the faces share, two or more
+    void add(std::int32_t f, std::int32_t g, Index shared) {
+        const Face face = mesh_.face(f), other = mesh_.face(g);
+        if (shared == other.size() || shared == face.size()) {
             if (other.size() == face.size())
-                ++part.baffles;
+                ++part_.baffles;
             else
-                duplicate = true;
+                duplicate_ = true;
         } else {
             if (shared == 2 && sharesPlainEdge(face, other)) return;
-            if (sharedInStep(face, other, positions)) return;
-            outOfStep = true;
+            if (sharedInStep(face, other, positions_)) return;
+            outOfStep_ = true;
         }
-        part.faces.push_back(f);
-        part.faces.push_back(g);
+        part_.faces.push_back(f);
+        part_.faces.push_back(g);
+    }
+    void end() {
+        part_.duplicates += duplicate_ ? 1 : 0;
+        part_.nonConsecutive += outOfStep_ ? 1 : 0;
+    }
+
+  private:
+    const PolyMesh& mesh_;
+    PairPart& part_;
+    std::vector<std::array<Index, 2>> positions_;
+    bool duplicate_ = false, outOfStep_ = false;
+};
+
+// The faces at the points that are marked, ascending; those of others are not listed.
+Rows facesAt(const PolyMesh& mesh, const std::vector<std::uint8_t>& points) {
+    const RawVector<std::int32_t> faces = collect<std::int32_t>(Index(mesh.faces()), [&](Index f, const auto& put) {
+        const auto id = static_cast<std::int32_t>(f);
+        if (std::ranges::any_of(mesh.face(id), [&](std::int32_t p) { return points[Index(p)] != 0; })) put(id);
     });
-    part.duplicates += duplicate ? 1 : 0;
-    part.nonConsecutive += outOfStep ? 1 : 0;
+    Rows rows;
+    const auto pointsOf = [&](Index i, const auto& put) {
+        for (const std::int32_t p : mesh.face(faces[i]))
+            if (points[Index(p)] != 0) put(Index(p));
+    };
+    turnIntoRows(mesh.points.size(), 0, faces.size(), pointsOf, rows.offsets, rows.items);
+    parallelFor(rows.items.size(), [&](Index i) { rows.items[i] = faces[Index(rows.items[i])]; }, 8192);
+    return rows;
 }
 
-// Filter: which faces can be of an odd pair at all? Two faces that share points oddly share some two that are
-// no edge of one of the faces (a diagonal of it), or they are the same triangle, or one repeats a vertex. At
-// each point the diagonals to higher points must lead to points that nothing else at this point leads to. A
-// table of bits finds the exceptions, and now and then a false one.
-class OddPoints {
-  public:
-    OddPoints(const PolyMesh& mesh, const Rows& pointFaces) : mesh_(mesh), pointFaces_(pointFaces) {}
+struct Pair {
+    std::int32_t face, other; // the lower one first
+    friend auto operator<=>(const Pair&, const Pair&) = default;
+};
 
-    void mark(std::int32_t p, std::vector<std::uint8_t>& suspects) {
-        if (!maybeOdd(p)) return;
+// At a point the diagonals to higher points must lead to points that nothing else at this point leads to, and triangles to other pairs of
+// points: else the faces are a pair that may be odd.
+class PairsAtPoint {
+  public:
+    PairsAtPoint(const PolyMesh& mesh, const Rows& pointFaces) : mesh_(mesh), pointFaces_(pointFaces) {}
+
+    template <class Put>
+    void find(std::int32_t p, const Put& put) {
         spokes_.clear();
         for (const std::int32_t f : pointFaces_[p]) addSpokes(p, f);
         std::sort(spokes_.begin(), spokes_.end());
@@ -162,8 +187,8 @@ class OddPoints {
             for (; j < spokes_.size() && spokes_[j].to == spokes_[i].to; ++j)
                 odd = odd || spokes_[j].diagonal ||
                       (j > i && spokes_[j].third >= 0 && spokes_[j].third == spokes_[j - 1].third);
-            if (!odd || j - i < 2) continue;
-            for (Index k = i; k < j; ++k) setFlag(suspects[Index(spokes_[k].face)]);
+            for (Index k = i; odd && k < j; ++k)
+                for (Index l = i; l < k; ++l) put(Pair{std::min(spokes_[k].face, spokes_[l].face), std::max(spokes_[k].face, spokes_[l].face)});
         }
     }
 
@@ -173,58 +198,6 @@ class OddPoints {
         bool diagonal;
         friend auto operator<=>(const Spoke&, const Spoke&) = default;
     };
-    static constexpr std::uint32_t words = 16;
-    using Bits = std::array<std::uint64_t, words>;
-
-    static bool set(Bits& bits, std::int32_t point) { // was it set?
-        const std::uint32_t hash = (static_cast<std::uint32_t>(point) * 2654435769U) >> 22;
-        const std::uint64_t bit = std::uint64_t(1) << (hash % 64);
-        const bool was = (bits[hash / 64] & bit) != 0;
-        bits[hash / 64] |= bit;
-        return was;
-    }
-
-    // The higher points that p is joined to by edges and by diagonals of its faces. Which are higher is as
-    // good as random, so lists grow without a branch. false: not simple, look closely.
-    bool collect(std::int32_t p) {
-        const std::span<const std::int32_t> faces = pointFaces_[p];
-        Index corners = 0;
-        for (const std::int32_t f : faces) corners += mesh_.face(f).size();
-        if (edges_.size() < corners) edges_.resize(corners), diagonals_.resize(corners);
-        edgeCount_ = diagonalCount_ = 0;
-        const auto add = [p](std::vector<std::int32_t>& list, Index& count, std::int32_t to) {
-            list[count] = to;
-            count += to > p ? 1 : 0;
-        };
-        for (const std::int32_t f : faces) {
-            const Face v = mesh_.face(f);
-            if (v.size() == 3) return false;
-            if (v.size() == 4) {
-                const Index at = Index(v[1] == p) + 2 * Index(v[2] == p) + 3 * Index(v[3] == p);
-                add(edges_, edgeCount_, v[(at + 1) % 4]);
-                add(diagonals_, diagonalCount_, v[(at + 2) % 4]);
-                add(edges_, edgeCount_, v[(at + 3) % 4]);
-                continue;
-            }
-            const auto at = static_cast<Index>(std::find(v.begin(), v.end(), p) - v.begin());
-            const Index after = wrapped(at, 1, v.size()), before = wrapped(at, -1, v.size());
-            for (Index i = 0; i < v.size(); ++i)
-                if (i == after || i == before)
-                    add(edges_, edgeCount_, v[i]);
-                else
-                    add(diagonals_, diagonalCount_, v[i]);
-        }
-        return true;
-    }
-
-    bool maybeOdd(std::int32_t p) {
-        if (!collect(p)) return true;
-        Bits taken{};
-        for (Index i = 0; i < edgeCount_; ++i) set(taken, edges_[i]);
-        bool odd = false;
-        for (Index i = 0; i < diagonalCount_; ++i) odd |= set(taken, diagonals_[i]);
-        return odd;
-    }
 
     void addSpokes(std::int32_t p, std::int32_t f) {
         const Face v = mesh_.face(f);
@@ -239,36 +212,62 @@ class OddPoints {
     const PolyMesh& mesh_;
     const Rows& pointFaces_;
     std::vector<Spoke> spokes_;
-    std::vector<std::int32_t> edges_, diagonals_;
-    Index edgeCount_ = 0, diagonalCount_ = 0;
 };
 
-std::vector<std::uint8_t> suspectFaces(const Measurement& m, const Rows& pointFaces) {
-    std::vector<std::uint8_t> suspects(static_cast<Index>(m.mesh.faces()), 0);
-    std::atomic<bool> isAnyRepeated = false;
-    parallelChunks(m.mesh.points.size(), 2048, [&](Index begin, Index end, Index) {
-        OddPoints odd(m.mesh, pointFaces);
-        for (Index p = begin; p < end; ++p) {
-            odd.mark(static_cast<std::int32_t>(p), suspects);
-            const auto faces = pointFaces[static_cast<std::int32_t>(p)];
-            if (std::ranges::adjacent_find(faces) != faces.end()) isAnyRepeated.store(true, std::memory_order_relaxed);
+// Where no face has a point twice: ascending, each once.
+RawVector<Pair> pairsToCheck(const PolyMesh& mesh, const std::vector<std::uint8_t>& odd) {
+    const Rows pointFaces = facesAt(mesh, odd);
+    RawVector<Pair> pairs = collect<Pair>(odd.size(), [&](Index p, const auto& put) {
+        if (odd[p] != 0) PairsAtPoint(mesh, pointFaces).find(static_cast<std::int32_t>(p), put);
+    });
+    tbb::parallel_sort(pairs);
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    return pairs;
+}
+
+void checkPairs(const PolyMesh& mesh, const RawVector<Pair>& pairs, PairPart& total) {
+    orderedLoop(pairs.size(), total, [&](Index begin, Index end, PairPart& part) {
+        FacePairs found(mesh, part);
+        for (Index i = begin; i < end; ++i) {
+            if (i > 0 && pairs[i - 1].face == pairs[i].face) continue;
+            found.begin();
+            for (Index k = i; k < pairs.size() && pairs[k].face == pairs[i].face; ++k) {
+                const Face other = mesh.face(pairs[k].other);
+                const auto shared = std::ranges::count_if(mesh.face(pairs[k].face), [&](std::int32_t p) { return std::ranges::find(other, p) != other.end(); });
+                found.add(pairs[k].face, pairs[k].other, static_cast<Index>(shared));
+            }
+            found.end();
         }
     });
-    // A repeated vertex counts twice with every face that has it.
-    if (isAnyRepeated) std::fill(suspects.begin(), suspects.end(), std::uint8_t(1));
-    return suspects;
+}
+
+// A point that a face has twice counts twice with every face that has it: all faces are compared with all that share points with them.
+void checkAll(const PolyMesh& mesh, PairPart& total) {
+    const Rows pointFaces = buildPointFaces(mesh);
+    orderedLoop(static_cast<Index>(mesh.faces()), total, [&](Index begin, Index end, PairPart& part) {
+        SharedCounts counts;
+        FacePairs found(mesh, part);
+        for (Index i = begin; i < end; ++i) {
+            const auto f = static_cast<std::int32_t>(i);
+            counts.clear();
+            for (const std::int32_t p : mesh.face(f)) {
+                const std::span<const std::int32_t> users = pointFaces[p];
+                for (auto it = users.rbegin(); it != users.rend() && *it > f; ++it) counts.add(*it);
+            }
+            found.begin();
+            counts.forEachShared([&](std::int32_t g, std::int32_t shared) { found.add(f, g, static_cast<Index>(shared)); });
+            found.end();
+        }
+    });
 }
 
 } // namespace
 
-void measureFaceFaces(Measurement& m, const Rows& pointFaces) {
-    const std::vector<std::uint8_t> suspects = suspectFaces(m, pointFaces);
+void measureFaceFaces(Measurement& m) {
     PairPart total;
-    orderedLoop(suspects.size(), total, [&](Index begin, Index end, PairPart& part) {
-        SharedCounts counts;
-        for (Index f = begin; f < end; ++f)
-            if (suspects[f] != 0) checkFace(m.mesh, pointFaces, static_cast<std::int32_t>(f), counts, part);
-    });
+    const OddPoints odd = oddPoints(m.mesh);
+    if (odd.isAnyTwice) checkAll(m.mesh, total);
+    else checkPairs(m.mesh, pairsToCheck(m.mesh, odd.marks), total);
     m.report.baffleFaces = total.baffles;
     m.report.duplicateFaces = total.duplicates;
     m.report.nonConsecutiveFaces = total.nonConsecutive;

@@ -3,6 +3,7 @@
 #include "i2b/quality/measure_steps.h"
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <functional>
 #include <tbb/parallel_sort.h>
 
@@ -151,26 +152,32 @@ struct EdgeCounts {
     }
 };
 
-// Internal points, and the edges, which checkMesh counts only if the internal points come first.
-void countEdges(Measurement& m, const Rows& pointFaces) {
+enum Use : std::uint8_t { none, inner, atBoundary };
+
+// Per point: has it no face, internal ones only, or others as well?
+std::vector<std::uint8_t> usesOf(const PolyMesh& mesh) {
+    std::vector<std::uint8_t> uses(mesh.points.size(), none);
+    const auto mark = [&](Index begin, Index end, Use use) {
+        parallelFor(end - begin, [&](Index i) {
+            for (const std::int32_t p : mesh.face(static_cast<std::int32_t>(begin + i))) {
+                std::atomic_ref own(uses[Index(p)]);
+                if (own.load(std::memory_order_relaxed) != use) own.store(use, std::memory_order_relaxed);
+            }
+        }, 4096);
+    };
+    mark(0, mesh.neighbour.size(), inner);
+    mark(mesh.neighbour.size(), mesh.owner.size(), atBoundary);
+    return uses;
+}
+
+// The edges, which checkMesh counts only if the internal points come first.
+void countEdges(Measurement& m, const std::vector<std::uint8_t>& uses) {
     const PolyMesh& mesh = m.mesh;
     const std::int32_t internalFaces = mesh.internalFaces();
-    std::vector<std::uint8_t> onBoundary(mesh.points.size(), 0);
-    const auto internal = orderedReduce(mesh.points.size(), std::int64_t(0), [&](Index begin, Index end) {
-        std::int64_t count = 0;
-        for (Index p = begin; p < end; ++p) {
-            const auto faces = pointFaces[static_cast<std::int32_t>(p)];
-            onBoundary[p] = !faces.empty() && faces.back() >= internalFaces ? 1 : 0;
-            count += onBoundary[p] == 0 ? 1 : 0;
-        }
-        return count;
-    }, std::plus<>());
-    const bool comeFirst = orderedReduce(mesh.points.size() - Index(internal), true, [&](Index begin, Index end) {
-        for (Index p = Index(internal) + begin; p < Index(internal) + end; ++p)
-            if (onBoundary[p] == 0 && !pointFaces[static_cast<std::int32_t>(p)].empty()) return false;
-        return true;
-    }, std::logical_and<>());
-    if (!comeFirst) return;
+    const auto internal = std::ranges::count_if(uses, [](std::uint8_t use) { return use != atBoundary; });
+    if (std::find(uses.begin() + internal, uses.end(), inner) != uses.end()) return;
+    const Rows pointFaces = buildPointFaces(mesh);
+    const auto isOnBoundary = [&](Index p) { return uses[p] == atBoundary ? 1 : 0; };
     EdgeCounts total;
     orderedLoop(mesh.points.size(), total, [&](Index begin, Index end, EdgeCounts& part) {
         std::vector<std::pair<std::int32_t, bool>> ends; // higher end; not on this boundary face
@@ -191,7 +198,7 @@ void countEdges(Measurement& m, const Rows& pointFaces) {
                 if (i > 0 && ends[i].first == ends[i - 1].first) continue;
                 ++part.all;
                 if (!ends[i].second) continue; // the boundary faces of an edge sort first
-                const int boundaryPoints = onBoundary[p] + onBoundary[Index(ends[i].first)];
+                const int boundaryPoints = isOnBoundary(p) + isOnBoundary(Index(ends[i].first));
                 ++part.internal;
                 part.onePoint += boundaryPoints == 1 ? 1 : 0;
                 part.twoPoints += boundaryPoints == 2 ? 1 : 0;
@@ -206,14 +213,14 @@ void countEdges(Measurement& m, const Rows& pointFaces) {
 
 } // namespace
 
-void measurePoints(Measurement& m, const Rows& pointFaces) {
-    const PolyMesh& mesh = m.mesh;
-    orderedLoop(mesh.points.size(), m.tallies.unusedPoints, [&](Index begin, Index end, Tally& part) {
+void measurePoints(Measurement& m) {
+    const std::vector<std::uint8_t> uses = usesOf(m.mesh);
+    orderedLoop(uses.size(), m.tallies.unusedPoints, [&](Index begin, Index end, Tally& part) {
         for (Index p = begin; p < end; ++p)
-            if (pointFaces[static_cast<std::int32_t>(p)].empty()) part.hit(static_cast<std::int32_t>(p));
+            if (uses[p] == none) part.hit(static_cast<std::int32_t>(p));
     });
     m.report.unusedPoints = m.tallies.unusedPoints.count;
-    countEdges(m, pointFaces);
+    countEdges(m, uses);
 }
 
 void measureNearPoints(Measurement& m) {

@@ -46,9 +46,9 @@ void measureFaces(Measurement& m);
 
 void measureDirections(Measurement& m); // empty and wedge patches
 void measureAlignment(Measurement& m);  // of edges, where a direction is empty; needs the directions
-void measurePoints(Measurement& m, const Rows& pointFaces);    // unused, internal ones; edges
-void measureFaceFaces(Measurement& m, const Rows& pointFaces); // pairs that share points oddly
-void measureNearPoints(Measurement& m);                        // after measureFaces
+void measurePoints(Measurement& m);     // unused, internal ones; edges
+void measureFaceFaces(Measurement& m);  // pairs that share points oddly
+void measureNearPoints(Measurement& m); // after measureFaces
 void measureRegions(Measurement& m);
 void measurePatches(Measurement& m);
 void measureZones(Measurement& m); // needs moments
