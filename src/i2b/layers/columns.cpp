@@ -1,5 +1,7 @@
 #include "i2b/layers/columns.h"
+#include "i2b/core/flags.h"
 #include "i2b/core/parallel.h"
+#include "i2b/core/raw_vector.h"
 #include "i2b/layers/layer_stack.h"
 #include "i2b/layers/wall_normals.h"
 #include <algorithm>
@@ -27,7 +29,8 @@ struct Upright {
 // One face' stack of prisms, for looking at with columns bent and straight.
 class Prisms {
   public:
-    Prisms(const Front& front, const LayerStack& stack) : front_(front), stack_(stack) {}
+    // heights: of all points of the stack (LayerStack::heights())
+    Prisms(const Front& front, const LayerStack& stack, const RawVector<double>& heights) : front_(front), stack_(stack), heights_(heights) {}
 
     void take(Index face) {
         n_ = 0;
@@ -43,7 +46,7 @@ class Prisms {
         for (Index i = 0; i < n_; ++i) {
             std::array<Vec3, maxStack + 1> column;
             const Index v = vertices_[i];
-            placeLayers(stack, v, front_.front[v], front_.wall(v), column.data());
+            placeLayers(stack, v, front_.front[v], front_.wall(v), &heights_[stack.pointOffset(v)], column.data());
             const auto points = static_cast<Index>(stack.pointsOf(v));
             for (Index k = 0; k + 1 < levels; ++k) points_[k * n_ + i] = column[points - 1 - k];
             points_[(levels - 1) * n_ + i] = front_.front[v];
@@ -74,6 +77,7 @@ class Prisms {
 
     const Front& front_;
     const LayerStack& stack_;
+    const RawVector<double>& heights_;
     int cells_ = 0;
     Index n_ = 0;
     std::array<Index, mostVertices> vertices_{};
@@ -101,19 +105,55 @@ std::vector<Column> fullyBent(const Front& front, const LayerStack& stack) {
     return columns;
 }
 
+RawVector<double> allHeights(const Front& front, const LayerStack& stack) {
+    RawVector<double> heights(stack.points());
+    parallelFor(stack.vertices, [&](Index v) {
+        if (stack.pointsOf(v) > 1) stack.heights(v, roomAt(front, v), &heights[stack.pointOffset(v)]);
+    });
+    return heights;
+}
+
+// Halves the bends of vertices that would stand worse bent than straight, over all faces around.
+class Lowering {
+  public:
+    Lowering(const Front& front, const std::vector<Upright>& bent, const std::vector<Upright>& straight) : front_(front), bent_(bent), straight_(straight) {}
+
+    // Gives whether it did.
+    bool lower(Index v, float& bend) const {
+        if (bend == 0) return false;
+        Upright with, without;
+        bool right = true;
+        for (auto f : front_.mesh.vf_range(vertexAt(v))) {
+            const Upright &b = bent_[Index(f.idx())], &s = straight_[Index(f.idx())];
+            with = worse(with, b), without = worse(without, s);
+            right = right && areRight(b, s);
+        }
+        if (right && mayStand(with, without)) return false;
+        bend = bend * 0.5f < leastBend ? 0 : bend * 0.5f;
+        return true;
+    }
+
+  private:
+    const Front& front_;
+    const std::vector<Upright>&bent_, &straight_; // per face
+};
+
 } // namespace
 
-// In rounds: vertices that would stand worse bent than straight, over all faces around, halve their bends, all at once, and
-// these faces are looked at again. One face may be worse off where another was still worse.
+// In rounds: all such vertices at once, and the faces around these are looked at again. One face may be worse off where another was still
+// worse.
 void bendColumns(const Front& front, LayerStack& stack) {
     if (stack.count == 1 && stack.uniform()) return;
-    LayerStack straight = stack;
+    const LayerStack straight = stack;
     stack.columns = fullyBent(front, stack);
-    std::vector<std::uint8_t> looks(stack.faces, 1), lowered(stack.vertices, 0);
+    const RawVector<double> heights = allHeights(front, stack);
+    std::vector<std::uint8_t> looks(stack.faces, 1), asked(stack.vertices, 1), lowered;
     std::vector<Upright> bent(stack.faces), upright(stack.faces); // upright: with straight columns
+    const Lowering lowering(front, bent, upright);
     for (bool first = true, again = true; again; first = false) {
         parallelChunks(stack.faces, 256, [&](Index begin, Index end, Index) {
-            Prisms prisms(front, stack);
+            if (!anyFlag(looks, begin, end)) return;
+            Prisms prisms(front, stack, heights);
             for (Index f = begin; f < end; ++f) {
                 if (!looks[f] || stack.cellsOf(f) < 2) continue;
                 prisms.take(f);
@@ -121,26 +161,17 @@ void bendColumns(const Front& front, LayerStack& stack) {
                 if (first) upright[f] = prisms.look(straight);
             }
         });
-        parallelFor(stack.vertices, [&](Index v) {
-            float& bend = stack.columns[v].bend;
-            lowered[v] = 0;
-            if (bend == 0) return;
-            Upright with, without;
-            bool right = true;
-            for (auto f : front.mesh.vf_range(vertexAt(v))) {
-                const Upright &b = bent[Index(f.idx())], &s = upright[Index(f.idx())];
-                with = worse(with, b), without = worse(without, s);
-                right = right && areRight(b, s);
-            }
-            if (right && mayStand(with, without)) return;
-            bend = bend * 0.5f < leastBend ? 0 : bend * 0.5f;
-            lowered[v] = 1;
+        if (!first)
+            forFlagged(looks, [&](Index f) {
+                for (auto v : front.mesh.fv_range(faceAt(f))) setFlag(asked[Index(v.idx())]);
+            });
+        lowered.assign(stack.vertices, 0);
+        forFlagged(asked, [&](Index v) { lowered[v] = lowering.lower(v, stack.columns[v].bend); });
+        looks.assign(stack.faces, 0), asked.assign(stack.vertices, 0);
+        forFlagged(lowered, [&](Index v) {
+            for (auto f : front.mesh.vf_range(vertexAt(v))) setFlag(looks[Index(f.idx())]);
         });
-        parallelFor(stack.faces, [&](Index f) {
-            const auto around = front.mesh.fv_range(faceAt(f));
-            looks[f] = std::any_of(around.begin(), around.end(), [&](auto v) { return lowered[Index(v.idx())] != 0; });
-        });
-        again = std::find(lowered.begin(), lowered.end(), 1) != lowered.end();
+        again = anyFlag(looks, 0, looks.size());
     }
 }
 

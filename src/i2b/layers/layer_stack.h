@@ -83,6 +83,8 @@ void taperCounts(const FrontMesh& mesh, std::vector<std::uint8_t>& counts);
 // The points of one front vertex' stack, from the front position to the wall position: layers.pointsOf(vertex) of them
 // into out, the last at the wall. The one place that knows where they are, whatever becomes of the two positions.
 void placeLayers(const LayerStack& layers, std::size_t vertex, const Vec3& front, const Vec3& wall, Vec3* out);
+// The same where its heights() are known.
+void placeLayers(const LayerStack& layers, std::size_t vertex, const Vec3& front, const Vec3& wall, const double* heights, Vec3* out);
 
 // m, from the front to the wall position of a vertex.
 double roomAt(const Front& front, std::size_t vertex);

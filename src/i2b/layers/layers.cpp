@@ -205,22 +205,24 @@ void LayerStack::heights(std::size_t vertex, double room, double* out) const {
     out[n - 1] = 0;
 }
 
-void placeLayers(const LayerStack& layers, std::size_t vertex, const Vec3& front, const Vec3& wall, Vec3* out) {
-    std::array<double, maxStack + 1> heights;
+void placeLayers(const LayerStack& layers, std::size_t vertex, const Vec3& front, const Vec3& wall, const double* heights, Vec3* out) {
     const Vec3 way = front - wall;
     const double room = norm(way);
     const auto n = static_cast<std::size_t>(layers.pointsOf(vertex));
-    if (n > 1) {
-        layers.heights(vertex, room, heights.data());
-        const Column column = layers.columns.empty() ? Column() : layers.columns[vertex];
-        const Vec3 aside = column.bend > 0 ? (column.normal() * room - way) * double(column.bend) : Vec3{};
-        for (std::size_t k = 0; k + 1 < n; ++k) {
-            const double s = room > 0 ? heights[k] / room : 0;
-            out[k] = wall + way * s;
-            if (column.bend > 0) out[k] += aside * (s - s * s);
-        }
+    const Column column = layers.columns.empty() ? Column() : layers.columns[vertex];
+    const Vec3 aside = column.bend > 0 ? (column.normal() * room - way) * double(column.bend) : Vec3{};
+    for (std::size_t k = 0; k + 1 < n; ++k) {
+        const double s = room > 0 ? heights[k] / room : 0;
+        out[k] = wall + way * s;
+        if (column.bend > 0) out[k] += aside * (s - s * s);
     }
     out[n - 1] = wall;
+}
+
+void placeLayers(const LayerStack& layers, std::size_t vertex, const Vec3& front, const Vec3& wall, Vec3* out) {
+    std::array<double, maxStack + 1> heights;
+    if (layers.pointsOf(vertex) > 1) layers.heights(vertex, norm(front - wall), heights.data());
+    placeLayers(layers, vertex, front, wall, heights.data(), out);
 }
 
 std::string LayerStack::validate(const Front& front) const {
