@@ -8,6 +8,14 @@ namespace {
 using Index = std::size_t;
 }
 
+std::vector<std::uint8_t> mayMove(const Front& front, std::size_t points) {
+    std::vector<std::uint8_t> may(points, 0);
+    std::fill(may.begin() + front.corePoints, may.end(), std::uint8_t(1));
+    for (Index v = 0; v < front.firstInserted(); ++v) may[Index(front.corePoint[v])] = 1;
+    for (const std::int32_t p : front.movedPoints) may[Index(p)] = 1;
+    return may;
+}
+
 MeshNodes::MeshNodes(Front& front, const LayerStack& layers)
     : front_(front), layers_(layers), core_(front.corePoints + static_cast<std::int32_t>(front.inserted.size())) {
     RawVector<Fan> fans(front.firstInserted());
@@ -53,14 +61,6 @@ void MeshNodes::nodesOf(std::int32_t point, std::vector<MeshNode>& out) const {
     } else if (const std::int32_t i = movedPlace(point); i >= 0) {
         out.push_back({MeshNode::core, i});
     }
-}
-
-std::vector<std::uint8_t> MeshNodes::mayMove(std::size_t points) const {
-    std::vector<std::uint8_t> may(points, 0);
-    std::fill(may.begin() + front_.corePoints, may.end(), std::uint8_t(1));
-    for (const std::int32_t p : points_) may[Index(p)] = 1;
-    for (const std::int32_t p : front_.movedPoints) may[Index(p)] = 1;
-    return may;
 }
 
 Vec3 MeshNodes::place(const MeshNode& node) const {

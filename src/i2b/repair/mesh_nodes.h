@@ -16,6 +16,9 @@ struct MeshNode {
     friend auto operator<=>(const MeshNode&, const MeshNode&) = default;
 };
 
+// Per mesh point, of so many: does it hang on such a node?
+std::vector<std::uint8_t> mayMove(const Front& front, std::size_t points);
+
 class MeshNodes {
   public:
     using Moved = std::vector<std::pair<std::int32_t, Vec3>>; // mesh points and where they go
@@ -26,7 +29,6 @@ class MeshNodes {
     std::size_t vertexOf(std::int32_t layerPoint) const { return layers_.vertexOfPoint(static_cast<std::size_t>(layerPoint - core_)); }
     // The nodes that a mesh point hangs on; appends none for a fixed one.
     void nodesOf(std::int32_t point, std::vector<MeshNode>& out) const;
-    std::vector<std::uint8_t> mayMove(std::size_t points) const; // per mesh point: has it such nodes?
     Vec3 place(const MeshNode& node) const;  // m
     double h(const MeshNode& node) const;    // m, size of the cells around
     std::uint8_t outside(const MeshNode& node) const; // as Front::outside

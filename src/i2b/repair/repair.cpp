@@ -59,12 +59,12 @@ std::vector<std::int32_t> thinCellsAt(const PolyMesh& mesh, const std::vector<st
 // In a lattice of cubes, one of them beside four at most, no face has over 25.3 degrees, no skewness is over 1/3, no weight under 1/3, no
 // ratio of volumes or determinant under 1/8: where the limits leave room for that only cells with a point that moves are looked at.
 // Empty: all are.
-std::vector<std::uint8_t> movable(const PolyMesh& mesh, const LatticeMesh& lattice, const MeshNodes& nodes, const QualityLimits& limits) {
+std::vector<std::uint8_t> movable(const PolyMesh& mesh, const LatticeMesh& lattice, const Front& front, const QualityLimits& limits) {
     const double h = lattice.lattice().h(lattice.lattice().maxLevel);
     const bool hasRoom = limits.nonOrthogonality > 30 && std::min(limits.skewness, limits.boundarySkewness) > 0.5 && limits.faceWeight < 0.3 &&
                          limits.volumeRatio < 0.1 && limits.determinant < 0.1 && limits.tetQuality < 1e-6 && limits.pyramidVolume < 0.05 * h * h * h;
     if (!lattice.cubes() || !hasRoom) return {};
-    return nodes.mayMove(mesh.points.size());
+    return mayMove(front, mesh.points.size());
 }
 
 class Repairer {
@@ -72,7 +72,7 @@ class Repairer {
     Repairer(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, LayerStack& layers, double startThickness, const WallGuide& guide, const DictionaryLimits& limits)
         : mesh_(mesh), front_(front), lattice_(lattice), layers_(layers), startThickness_(startThickness), limits_(limits), walls_(wallPositions(front)), thin_(layers.areThin()),
           thinFrom_(!layers.areFlat() ? mesh.cells : mesh.cells - static_cast<std::int32_t>(layers.cells())), cellFaces_(buildCellFaces(mesh)),
-          faults_(mesh, cellFaces_, strictLimits(limits), thinFrom_, movable(mesh, lattice, MeshNodes(front, layers), strictLimits(limits))), optimiser_(mesh, cellFaces_, faults_, front, layers, guide) {}
+          faults_(mesh, cellFaces_, strictLimits(limits), thinFrom_, movable(mesh, lattice, front, strictLimits(limits))), optimiser_(mesh, cellFaces_, faults_, front, layers, guide) {}
     RepairSummary run(bool mayThinLeave);
 
   private:
