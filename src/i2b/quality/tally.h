@@ -2,9 +2,9 @@
 // and the tallies are joined in the order of the chunks.
 #pragma once
 #include "i2b/core/parallel.h"
+#include "i2b/core/side_by_side.h"
 #include <cstdint>
 #include <limits>
-#include <tbb/parallel_invoke.h>
 #include <vector>
 
 namespace i2b {
@@ -57,18 +57,11 @@ void orderedBlocks(std::size_t n, std::size_t block, Part& total, const Body& bo
     for (std::size_t begin = 0; begin < n; begin += block) {
         const std::size_t end = begin + block < n ? begin + block : n;
         std::vector<Part> parts((end - begin + chunk - 1) / chunk);
-        const LoopFence fence;
-        const auto beside = [&](const auto& work) {
-            fence.enter();
-            work();
-            fence.leave();
-        };
         const auto measure = [&] {
             parallelChunks(end - begin, chunk, [&](std::size_t b, std::size_t e, std::size_t c) { body(begin + b, begin + e, parts[c]); });
         };
         if (begin == 0) measure();
-        else tbb::parallel_invoke([&] { beside(measure); }, [&] { beside([&] { afterBlock(begin - block, begin); }); });
-        fence.join();
+        else sideBySide(measure, [&] { afterBlock(begin - block, begin); });
         for (const Part& part : parts) total.join(part);
     }
     if (n > 0) afterBlock((n - 1) / block * block, n);
