@@ -205,19 +205,20 @@ TEST(MeshFaults, OnlyWherePointsMayMove) {
         for (int i = 0; i < 3; ++i) movable.push_back(static_cast<std::int32_t>(random() % mesh.points.size()));
         for (const std::int32_t p : movable) mayMove[static_cast<std::size_t>(p)] = 1;
         const std::vector<std::int32_t> cells = cellsThatUse(mesh, movable);
-        const auto areThere = [&](const std::vector<std::int32_t>& some) { return std::ranges::includes(cells, some); };
+        const auto isThere = [&](std::int32_t c) { return std::ranges::binary_search(cells, c); };
         MeshFaults near(mesh, cellFaces, strict(), mesh.cells, mayMove);
         for (int round = 0; round < 2; ++round) {
             const MeshFaults all(mesh, cellFaces, strict());
             std::vector<std::int32_t> expected; // faces of these cells; others are of no account
             for (const std::int32_t f : all.poorFaces()) {
-                const bool isIn = std::ranges::binary_search(cells, mesh.owner[static_cast<std::size_t>(f)]) ||
-                                  (f < mesh.internalFaces() && std::ranges::binary_search(cells, mesh.neighbour[static_cast<std::size_t>(f)]));
+                const auto i = static_cast<std::size_t>(f);
+                const bool isIn = isThere(mesh.owner[i]) || (f < mesh.internalFaces() && isThere(mesh.neighbour[i]));
                 isIn ? expected.push_back(f) : void(++spared);
             }
             EXPECT_TRUE(std::ranges::includes(near.poorFaces(), expected)) << "seed " << seed;
+            EXPECT_LT(near.poorFaces().size(), all.poorFaces().size()) << "seed " << seed;
             std::vector<std::int32_t> bad = all.badCells();
-            std::erase_if(bad, [&](std::int32_t c) { return !areThere({c}); });
+            std::erase_if(bad, [&](std::int32_t c) { return !isThere(c); });
             EXPECT_TRUE(std::ranges::includes(near.badCells(), bad));
             for (const std::int32_t p : movable) mesh.points[static_cast<std::size_t>(p)] += Vec3{0.7, -0.6, 0.4};
             near.update(cells);

@@ -77,7 +77,7 @@ TEST(OddPoints, AreAllFound) {
     EXPECT_EQ(std::ranges::count(none.marks, 0), 343);
 }
 
-// Where more diagonals meet at a point than there is room for they are looked for at their other ends: a fan of squares around one point, each twice.
+// Where more diagonals meet at a point than there is room for they are looked for at their other ends: a fan of squares around one point.
 TEST(OddPoints, ManyDiagonalsAtAPoint) {
     PolyMesh mesh;
     constexpr std::int32_t squares = 40;

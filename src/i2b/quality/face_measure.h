@@ -6,6 +6,19 @@
 
 namespace i2b {
 
+// How many of a face's n vertices it has had before. n: of any type, a constant for faces of a kind.
+template <class Count>
+inline int repeatedVertices(std::span<const std::int32_t> v, Count n) {
+    int repeated = 0;
+    for (std::size_t i = 1; i < n; ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (v[i] == v[j]) {
+                ++repeated;
+                break;
+            }
+    return repeated;
+}
+
 struct FacePart {
     Tally outOfRange, zeroArea, warped, concave;
     std::int64_t faultyVertices = 0, flatnessFaces = 0;

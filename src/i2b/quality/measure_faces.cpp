@@ -9,18 +9,6 @@ namespace {
 using Index = std::size_t;
 constexpr double rounding = 1e-15, tinyLength = 1e-150, tinyArea = 1e-300;
 
-template <class Count>
-int repeatedVertices(std::span<const std::int32_t> v, Count n) {
-    int repeated = 0;
-    for (Index i = 1; i < n; ++i)
-        for (Index j = 0; j < i; ++j)
-            if (v[i] == v[j]) {
-                ++repeated;
-                break;
-            }
-    return repeated;
-}
-
 // Does every corner clearly turn with the normal? Of two unit vectors the dot product is then far above the
 // limit that concavitySine compares it with, which is the rounding error; no roots, no divisions.
 template <class Count>

@@ -2,6 +2,7 @@
 #include "i2b/core/flags.h"
 #include "i2b/core/parallel.h"
 #include "i2b/core/raw_fill.h"
+#include "i2b/quality/face_measure.h"
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -39,13 +40,6 @@ struct alignas(32) Ends {
     }
 };
 
-bool hasOneTwice(Face v) {
-    for (Index i = 1; i < v.size(); ++i)
-        for (Index k = 0; k < i; ++k)
-            if (v[i] == v[k]) return true;
-    return false;
-}
-
 class Finder {
   public:
     explicit Finder(const PolyMesh& mesh) : mesh_(mesh), odd_(mesh.points.size(), 0), ends_(filled(mesh.points.size(), Ends{})) {}
@@ -77,7 +71,7 @@ class Finder {
         if (!ends_[Index(low)].put(-2 - static_cast<std::int32_t>(hash >> 2))) setFlag(odd_[Index(low)]);
     }
     void addDiagonals(Face v) {
-        if (hasOneTwice(v)) anyTwice_.store(true, std::memory_order_relaxed);
+        if (repeatedVertices(v, v.size()) > 0) anyTwice_.store(true, std::memory_order_relaxed);
         else if (v.size() == 4) addDiagonal(v[0], v[2]), addDiagonal(v[1], v[3]);
         else if (v.size() == 3) addTriangle(v);
         else
