@@ -196,6 +196,26 @@ TEST(FitMeasure, patches) {
     EXPECT_EQ(fit(mesh, Surface{}).wallNodesOnGeometryFraction, 1);
 }
 
+// Where the wall ends at a side of the domain the mesh has an edge as sharp as the two fold there: the edges of a box's top count as
+// captured whether the top is wall or not, unless the other patch goes on where the wall ends.
+TEST(FitMeasure, edgesAtTheSidesOfTheDomain) {
+    const PolyMesh mesh = cubeWall([](Vec3 p) { return p; });
+    const FitReport all = fit(mesh, box(1)), ends = fit(mesh, box(1), {"body"});
+    EXPECT_EQ(ends.featureSamples, all.featureSamples);
+    EXPECT_EQ(ends.featureCaptureFraction, 1);
+    // A side of the cube is cut in two patches: its middle line is no edge of the mesh, whatever the geometry says.
+    PolyMesh cut = mesh;
+    cut.patches = {{"body", "wall", 0, n * n / 2}, {"rest", "patch", n * n / 2, 6 * n * n - n * n / 2}};
+    Surface wedge; // folds by 90 degrees along that line
+    wedge.parts.push_back({"wedge", "", 2});
+    wedge.points = {{0, 0, 0}, {0, 1, 0}, {0, 1, 0.5}, {0, 0, 0.5}, {-1, 1, 0.5}, {-1, 0, 0.5}};
+    wedge.triangles = {{0, 1, 2}, {0, 2, 3}, {3, 2, 4}, {3, 4, 5}};
+    wedge.partOf.assign(4, 0);
+    const FitReport flat = fit(cut, wedge, {"body"});
+    EXPECT_GT(flat.featureSamples, 0);
+    EXPECT_LT(flat.featureCaptureFraction, 0.1);
+}
+
 // The box with its top, and the border between the two parts at a height; neither has a side there.
 Surface boxOfTwo(double border) {
     Surface s;

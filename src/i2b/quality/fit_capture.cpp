@@ -13,23 +13,51 @@ namespace {
 constexpr double rimGap = 2;             // of h: a sheet beyond whose free edge something follows so near does not end there
 constexpr double beside = 0.1;           // of h: what is seen so far to both sides of an edge says whether it folds
 
-// Edges of the wall where two of its faces fold by more than the crease angle.
-Surface creaseSurface(const PolyMesh& mesh, const Wall& wall) {
+bool isSame(const WallEdge& e, const WallEdge& f) { return e.a == f.a && e.b == f.b; }
+
+// m, n: area vectors of two faces at an edge, m^2.
+bool isCrease(const Vec3& m, const Vec3& n) { return norm2(m) > 0 && norm2(n) > 0 && degreesBetween(m, n) > creaseAngle; }
+
+// Of the wall's edges, those where two of its faces fold by more than the crease angle: places in wall.edges.
+RawVector<std::size_t> foldsOf(const Wall& wall) {
     const std::vector<WallEdge>& edges = wall.edges;
-    const auto isSame = [&](std::size_t i, std::size_t k) { return edges[i].a == edges[k].a && edges[i].b == edges[k].b; };
-    const RawVector<std::size_t> folded = collect<std::size_t>(edges.size(), [&](std::size_t i, const auto& put) {
-        if (i > 0 && isSame(i - 1, i)) return; // told with the first
+    return collect<std::size_t>(edges.size(), [&](std::size_t i, const auto& put) {
+        if (i > 0 && isSame(edges[i - 1], edges[i])) return; // told with the first
         bool folds = false;
-        for (std::size_t end = i; end < edges.size() && isSame(i, end); ++end)
-            for (std::size_t k = i; k < end; ++k) {
-                const Vec3& m = wall.shapes[static_cast<std::size_t>(edges[k].face)].area;
-                const Vec3& n = wall.shapes[static_cast<std::size_t>(edges[end].face)].area;
-                folds |= norm2(m) > 0 && norm2(n) > 0 && degreesBetween(m, n) > creaseAngle;
-            }
+        for (std::size_t end = i; end < edges.size() && isSame(edges[i], edges[end]); ++end)
+            for (std::size_t k = i; k < end; ++k)
+                folds |= isCrease(wall.shapes[static_cast<std::size_t>(edges[k].face)].area, wall.shapes[static_cast<std::size_t>(edges[end].face)].area);
         if (folds) put(i);
     }, 1024);
+}
+
+// The same of those where the wall ends at faces of the boundary that are none of it, as at a side of the domain: what stands on the
+// ground has sharp edges there.
+RawVector<std::size_t> foldsAtEnds(const PolyMesh& mesh, const Wall& wall) {
+    const std::vector<WallEdge>& edges = wall.edges;
+    const RawVector<std::size_t> ends = collect<std::size_t>(edges.size(), [&](std::size_t i, const auto& put) {
+        if ((i == 0 || !isSame(edges[i - 1], edges[i])) && (i + 1 == edges.size() || !isSame(edges[i], edges[i + 1]))) put(i);
+    }, 1024);
+    if (ends.empty()) return {};
+    const auto boundary = static_cast<std::size_t>(mesh.faces() - mesh.internalFaces());
+    return collect<std::size_t>(boundary, [&](std::size_t i, const auto& put) {
+        const std::int32_t f = mesh.internalFaces() + static_cast<std::int32_t>(i);
+        if (std::binary_search(wall.faces.begin(), wall.faces.end(), f)) return;
+        const auto face = mesh.face(f);
+        for (std::size_t k = 0; k < face.size(); ++k) {
+            const auto [a, b] = std::minmax(face[k], face[(k + 1) % face.size()]);
+            const auto at = std::lower_bound(ends.begin(), ends.end(), WallEdge{a, b, -1}, [&](std::size_t end, const WallEdge& e) { return edges[end] < e; });
+            if (at == ends.end() || edges[*at].a != a || edges[*at].b != b) continue;
+            if (isCrease(wall.shapes[static_cast<std::size_t>(edges[*at].face)].area, measureFace(mesh, f).area)) put(*at);
+        }
+    }, 1024);
+}
+
+Surface creaseSurface(const PolyMesh& mesh, const Wall& wall) {
     Surface s;
-    for (const std::size_t i : folded) addSegment(s, mesh.points[static_cast<std::size_t>(edges[i].a)], mesh.points[static_cast<std::size_t>(edges[i].b)]);
+    for (const RawVector<std::size_t>& folds : {foldsOf(wall), foldsAtEnds(mesh, wall)})
+        for (const std::size_t i : folds)
+            addSegment(s, mesh.points[static_cast<std::size_t>(wall.edges[i].a)], mesh.points[static_cast<std::size_t>(wall.edges[i].b)]);
     return s;
 }
 

@@ -18,7 +18,8 @@
 // straight line as far as h from the sample; and where geometry does not hide it: an edge inside another part, more than
 // 0.05 h behind what is seen from 0.3 h and from h over the nearest wall, is none that a wall could have, and nor is one at which the
 // geometry, seen from there, goes straight on: where parts lie flush, or one ends at the far side of another, what is seen 0.1 h to both
-// sides folds by no more than a wall edge must. The share that has a wall edge, folded by more than 25 degrees, within 0.1 h.
+// sides folds by no more than a wall edge must. The share that has a wall edge within 0.1 h where two faces of the wall fold by more than 25
+// degrees, or one and that of another patch at which the wall ends.
 //
 // Faint edges: the lines that the geometry's user named, and edges over a feature angle of his below 40 degrees: a wall need not fold there.
 // The same samples within 0.05 h of the geometry, where any line of either kind that is near counts against "resolvable"; captured where an edge of the wall that runs
