@@ -104,6 +104,7 @@ struct DomainOptions {
     std::optional<Box> box;              // m; else 10 body lengths around (external) or just around (internal)
     Flow flow = Flow::automatic;         // automatic: seeds if there are any, else external
     std::vector<Seed> seeds;
+    std::vector<Seed> keepOut;           // places that the flow must not reach
 };
 
 struct FitOptions {

@@ -65,7 +65,6 @@ TEST(ChooseRegions, BySeed) {
     EXPECT_FALSE(room.at(0).painted);
     EXPECT_TRUE(room.at(1).painted);
     EXPECT_EQ(room.at(1).name, "jacket");
-    EXPECT_TRUE(room.regions.leaks.empty());
 }
 
 TEST(ChooseRegions, SeedsOnTheBoxItselfCount) {
@@ -83,15 +82,14 @@ TEST(ChooseRegions, TwoSeedsInTwoRegions) {
     EXPECT_EQ(room.at(0).name, "b");
     EXPECT_EQ(room.at(1).name, "a");
     EXPECT_TRUE(room.at(0).painted && room.at(1).painted);
-    EXPECT_TRUE(room.regions.leaks.empty());
 }
 
-TEST(ChooseRegions, TwoSeedsThatReachEachOtherAreALeak) {
+// What is between them is for findLeaks() to say.
+TEST(ChooseRegions, TwoSeedsInOneRegion) {
     Room room(false);
     room.choose(with(Flow::automatic, {{"a", {4, 4, 4}}, {"b", {0.5, 0.5, 0.5}}}));
-    ASSERT_EQ(room.regions.leaks.size(), 1u);
-    EXPECT_THAT(room.regions.leaks[0].text,
-                testing::AllOf(testing::HasSubstr("'a'"), testing::HasSubstr("'b'")));
+    EXPECT_TRUE(room.at(0).painted);
+    EXPECT_EQ(room.at(0).name, "b");
 }
 
 TEST(ChooseRegions, RefusesWithARemedy) {

@@ -10,7 +10,10 @@ namespace i2b {
 // numbers regions by first cell (level, then lattice order). Same result on any number of threads.
 Regions labelRegions(const CellGrid& grid, const CutCells& cut);
 
-// Marks the regions to mesh. Throws Error where a seed lies outside the box or in a wall, or nothing is left.
+// The region that a place lies in. Throws Error where that is outside the box or in a cut cell; what: names the place there.
+std::int32_t regionAt(const Regions& regions, const CellGrid& grid, const Vec3& place, const char* what);
+
+// Marks the regions to mesh, and gives them the names of their seeds. Throws Error where a seed is in none, or nothing is left.
 void chooseRegions(Regions& regions, const CellGrid& grid, const CutCells& cut, const DomainOptions& domain);
 
 } // namespace i2b

@@ -28,10 +28,16 @@ struct RegionPiece {
     std::int32_t region = 0;
 };
 
+// An opening between places that someone holds to be apart.
 struct Leak {
-    Vec3 place;          // m
-    double width = 0;    // m, of the opening
-    std::string text;
+    Vec3 place;             // m, its widest
+    double width = 0;       // m, of the largest ball that goes through there
+    std::string text;       // between what, and which part is beside it
+    double area = 0;        // m^2, of cells in it as seen along the way through: what is within a cell of its rim is left out; 0: no opening, all is open
+    Box box;                // m
+    std::int32_t part = -1; // nearest to its widest place
+    bool keepOut = false;   // leads to a place that the flow must not reach:
+    Vec3 beyond;            // m, where it is widest around that, or around the second seed
 };
 
 struct Regions {

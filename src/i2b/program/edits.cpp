@@ -212,7 +212,7 @@ Edit toEdit(const Setting& setting, const std::string& text) {
 
 std::vector<std::string> joinNumbers(const std::vector<std::string>& arguments) {
     const std::map<std::string, std::size_t, std::less<>> counts{
-        {"--seed", 3},         {"--box", 6},           {"--box-size", 9},   {"--sphere-size", 7},
+        {"--seed", 3},         {"--keep-out", 3},     {"--box", 6},           {"--box-size", 9},   {"--sphere-size", 7},
         {"--cylinder-size", 10}, {"--point-size", 6}, {"--segment-size", 9}, {"--line-size", 9},
         {"--feature-box", 6}};
     std::vector<std::string> joined;

@@ -12,6 +12,7 @@
 #include "i2b/geometry/rims.h"
 #include "i2b/grid/build.h"
 #include "i2b/grid/cut.h"
+#include "i2b/paint/leaks.h"
 #include "i2b/paint/paint.h"
 #include "i2b/paint/touched_parts.h"
 #include "i2b/program/mesh_limits.h"
@@ -82,6 +83,26 @@ void noteLeftOut(const std::vector<Region>& parts, std::vector<std::string>& not
     const Region& largest = *std::ranges::max_element(parts, {}, &Region::cells);
     notes.push_back(fmt::format("left out behind openings too narrow for cells: {} cells in {} place{}, the largest at ({:g} {:g} {:g}): give a smaller --size there to mesh them",
                                 cells, parts.size(), parts.size() > 1 ? "s" : "", largest.seed.x, largest.seed.y, largest.seed.z));
+}
+
+bool hasCellAt(const CellGrid& grid, const std::vector<Mask::Ptr>& levels, const Vec3& place) {
+    for (std::size_t l = 0; l < levels.size(); ++l)
+        if (levels[l]->isValueOn(toCoord(grid.lattice.cellAt(grid.levels[l].level, place)))) return true;
+    return false;
+}
+
+// Refuses a mesh with cells where the flow must not come. Paint may come there where cells do not: through an opening no wider than one.
+void refuseWhereKeptOut(const GridResult& r, std::vector<std::string>& notes) {
+    const std::vector<Leak>& leaks = r.regions.leaks;
+    for (auto first = leaks.begin(), next = first; first != leaks.end(); first = next) { // those to one place follow each other, the widest first
+        next = std::find_if(first, leaks.end(), [&](const Leak& l) { return !(l.beyond == first->beyond); });
+        if (!first->keepOut) continue;
+        const std::string opening = fmt::format("the widest of {} opening{}, {:.3g} m wide, at ({:.6g} {:.6g} {:.6g})", next - first, next - first > 1 ? "s" : "",
+                                                first->width, first->place.x, first->place.y, first->place.z);
+        if (hasCellAt(r.grid, r.kept.levels, first->beyond))
+            throw Error(ErrorKind::input, first->text, opening, "close it, or give cells larger than it there; i2b regions lists all openings");
+        notes.push_back(first->text + ", but no cells go through " + opening);
+    }
 }
 
 // places: ascending.
@@ -178,10 +199,15 @@ std::unique_ptr<GridResult> generateGrid(const Options& options, Context& contex
     r.regions = stage(
         context, "paint", [&] { return regionsOf(r.surface, r.field, r.grid, r.cut, options.domain); },
         [](const Regions& regions) { return regions.table.size(); });
+    if (!options.domain.keepOut.empty() || options.domain.seeds.size() > 1)
+        r.regions.leaks = stage(
+            context, "leaks", [&] { return findLeaks(r.regions, r.grid, *r.index, options.domain); },
+            [](const std::vector<Leak>& leaks) { return leaks.size(); });
     if (road == Road::regions) return out;
     r.kept = stage(
         context, "carve", [&] { return carve(r.grid, r.cut, r.regions, *r.index, options.fit); },
         [](const KeptCells& k) { return k.cellCount(); });
+    refuseWhereKeptOut(r, r.notes.messages);
     noteLeftOut(r.kept.leftOut, r.notes.messages);
     return out;
 }

@@ -132,13 +132,17 @@ void checkDomain(const DomainOptions& domain, Checker& check) {
         check.add("box", "the box has no volume", "give the lower corner first: x0 y0 z0 x1 y1 z1");
     if (domain.flow != Flow::automatic && !domain.seeds.empty())
         check.add("seed", "seeds and external or internal exclude each other", "give one of the two");
-    for (const Seed& seed : domain.seeds) {
-        const std::string place = fmt::format("{}, {}, {}", seed.place.x, seed.place.y, seed.place.z);
-        if (!isFinite(seed.place))
-            check.add("seed", "the seed at " + place + " is not finite", "give metres");
-        else if (domain.box && !domain.box->contains(seed.place))
-            check.add("seed", "the seed at " + place + " lies outside the box", "move it or enlarge the box");
-    }
+    const auto checkPlaces = [&](const char* key, const char* what, const std::vector<Seed>& places) {
+        for (const Seed& seed : places) {
+            const std::string place = fmt::format("the {} at {}, {}, {}", what, seed.place.x, seed.place.y, seed.place.z);
+            if (!isFinite(seed.place))
+                check.add(key, place + " is not finite", "give metres");
+            else if (domain.box && !domain.box->contains(seed.place))
+                check.add(key, place + " lies outside the box", "move it or enlarge the box");
+        }
+    };
+    checkPlaces("seed", "seed", domain.seeds);
+    checkPlaces("keep-out", "place to keep out of", domain.keepOut);
 }
 
 // The flow past the plate that y-plus is taken from.

@@ -10,6 +10,8 @@ namespace {
 
 constexpr double negligible = 1e-6; // of the largest region's volume
 
+std::string placeText(const Vec3& p) { return fmt::format("({:.6g} {:.6g} {:.6g})", p.x, p.y, p.z); }
+
 std::string partNames(const Region& region, const std::vector<ReportPart>& parts) {
     constexpr std::size_t most = 4;
     std::vector<std::string> names;
@@ -123,9 +125,11 @@ std::string regionsText(const Regions& regions, const std::vector<ReportPart>& p
             text += regionLine(*region, parts);
     }
     if (small) text += fmt::format("and {} regions smaller than {:.2g} m3\n", small, least);
-    for (const Leak& leak : regions.leaks)
-        text += fmt::format("leak {:.4g} m wide at {:.6g},{:.6g},{:.6g}: {}\n", leak.width, leak.place.x,
-                            leak.place.y, leak.place.z, leak.text);
+    for (const Leak& leak : regions.leaks) {
+        text += fmt::format("leak {:.4g} m wide at {:.6g},{:.6g},{:.6g}", leak.width, leak.place.x, leak.place.y, leak.place.z);
+        if (leak.area > 0) text += fmt::format(", {:.3g} m2, from {} to {}", leak.area, placeText(leak.box.lo), placeText(leak.box.hi));
+        text += ": " + leak.text + "\n";
+    }
     return text;
 }
 

@@ -50,6 +50,8 @@ const std::array table{
     Setting{"internal", "", "Mesh what the geometry encloses", FlowChoice{Flow::internal}},
     Setting{"seed", "[NAME=]X,Y,Z | X Y Z", "A place in the flow, m, and the name of its zone; repeatable",
             I2B_FIELD(std::vector<Seed>, options.domain.seeds)},
+    Setting{"keep-out", "[NAME=]X,Y,Z | X Y Z", "A place that the flow must not reach, m: where it would, nothing is meshed and the openings on its way are told; repeatable",
+            I2B_FIELD(std::vector<Seed>, options.domain.keepOut)},
     Setting{"feature-angle", "DEG",
             "Angle between two triangles above which their edge is kept sharp; 180: none",
             I2B_FIELD(double, options.geometry.featureAngle), "feature", "angle"},

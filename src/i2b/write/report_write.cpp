@@ -155,7 +155,11 @@ std::string reportText(const RunReport& r) {
         patches.push_back({{"name", p.name}, {"type", p.type}, {"faces", p.count}});
     for (const Region& region : r.regions) regions.push_back(regionJson(region, r.parts));
     for (const Leak& leak : r.leaks)
-        leaks.push_back({{"place", place(leak.place)}, {"width", number(leak.width)}, {"text", leak.text}});
+        leaks.push_back({{"place", place(leak.place)},
+                         {"width", number(leak.width)},
+                         {"area", number(leak.area)},
+                         {"box", Json::array({place(leak.box.lo), place(leak.box.hi)})},
+                         {"text", leak.text}});
 
     Json json;
     json["program"] = {{"name", r.programName}, {"version", r.programVersion}};
