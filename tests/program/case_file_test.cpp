@@ -40,6 +40,7 @@ Case everything() {
     o.domain.box = Box{{-1.5, 0, 0}, {1, 2, 3}};
     o.domain.flow = Flow::internal;
     o.domain.seeds = {{"jacket", {0.1, -0.2, 0.3}}, {"", {1, 2, 3}}};
+    o.domain.keepOut = {{"cabin", {0.4, 0.5, -0.6}}};
     o.fit = {0.2, 7};
     o.layers = {3, 1e-4, 1.35, 0.01, LayerUnit::cell, 30, 40, 1.5e-5, 4.6, {{"wheel{1,2}", 2, 1e-3, 0, 1.25}, {"body", 0, 0, 0, 0}}};
     o.output = {"out/car", {"vtu"}, true};
@@ -87,6 +88,11 @@ void expectSame(const Options& a, const Options& b) {
     for (std::size_t i = 0; i < a.domain.seeds.size(); ++i) {
         EXPECT_EQ(a.domain.seeds[i].name, b.domain.seeds[i].name);
         EXPECT_EQ(a.domain.seeds[i].place, b.domain.seeds[i].place);
+    }
+    ASSERT_EQ(a.domain.keepOut.size(), b.domain.keepOut.size());
+    for (std::size_t i = 0; i < a.domain.keepOut.size(); ++i) {
+        EXPECT_EQ(a.domain.keepOut[i].name, b.domain.keepOut[i].name);
+        EXPECT_EQ(a.domain.keepOut[i].place, b.domain.keepOut[i].place);
     }
     EXPECT_EQ(a.fit.clearance, b.fit.clearance);
     EXPECT_EQ(a.fit.sweeps, b.fit.sweeps);

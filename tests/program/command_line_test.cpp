@@ -237,7 +237,7 @@ TEST(CommandLine, HelpNamesEverySetting) {
 // another.
 TEST(CommandLine, SeedsDoNotSwallowFiles) {
     const CommandLine line = parseCommandLine(
-        {"regions", "--seed", "0", "-1", "-.25", "body.stl", "--seed", "air=-1,2,3e-1", "fin.stl"});
+        {"regions", "--seed", "0", "-1", "-.25", "body.stl", "--keep-out", "1", "2", "-3", "--seed", "air=-1,2,3e-1", "fin.stl", "--keep-out=room=0,0,1"});
     EXPECT_EQ(line.command, Command::regions);
     EXPECT_THAT(line.given.options.geometry.files, ElementsAre("body.stl", "fin.stl"));
     const std::vector<Seed>& seeds = line.given.options.domain.seeds;
@@ -246,6 +246,10 @@ TEST(CommandLine, SeedsDoNotSwallowFiles) {
     EXPECT_EQ(seeds[0].place, (Vec3{0, -1, -0.25}));
     EXPECT_EQ(seeds[1].name, "air");
     EXPECT_EQ(seeds[1].place, (Vec3{-1, 2, 0.3}));
+    const std::vector<Seed>& keepOut = line.given.options.domain.keepOut;
+    ASSERT_EQ(keepOut.size(), 2u);
+    EXPECT_EQ(keepOut[0].place, (Vec3{1, 2, -3}));
+    EXPECT_EQ(keepOut[1].name, "room");
 }
 
 // A negative number is a value (for validate() to judge), never an unknown option.

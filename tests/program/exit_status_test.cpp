@@ -133,6 +133,22 @@ TEST_F(ExitStatus, RegionsAndQuiet) {
     EXPECT_EQ(quiet.text, "");
 }
 
+// A duct without its inlet: where the flow must not reach is told with the opening on the way, 1; with its inlet it is meshed.
+TEST_F(ExitStatus, LeaksAreTold) {
+    ASSERT_EQ(run("sample tunnel -o parts").status, 0);
+    const std::string rest = " parts/wall.stl parts/outlet.stl --size 0.04 --keep-out duct=1,0,0.15 --quiet --format report --out case";
+    const Outcome open = run("mesh" + rest);
+    EXPECT_EQ(open.status, 1) << open.text;
+    EXPECT_THAT(open.text, AllOf(HasSubstr("the flow and 'duct' reach each other: an opening beside wall"), HasSubstr("the widest of 1 opening")));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "case"));
+    const Outcome regions = run("regions" + rest);
+    EXPECT_EQ(regions.status, 0) << regions.text;
+    EXPECT_THAT(regions.text, HasSubstr("leak 0."));
+    const Outcome closed = run("mesh parts/inlet.stl" + rest);
+    EXPECT_EQ(closed.status, 0) << closed.text;
+    EXPECT_EQ(closed.text, "");
+}
+
 // 130: Ctrl-C ends a long run soon, and leaves no trace of it.
 TEST_F(ExitStatus, InterruptLeavesNothing) {
     ASSERT_EQ(run("sample engine -o engine.stl").status, 0);

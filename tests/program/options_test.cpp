@@ -88,6 +88,11 @@ TEST(Validate, NamesEachBrokenOption) {
          [](Options& o) {
              o.domain.flow = Flow::external, o.domain.seeds = {{"", {2, 0, 0}}};
          }},
+        {"keep-out",
+         [](Options& o) {
+             o.domain.box = Box{{0, 0, 0}, {1, 1, 1}}, o.domain.keepOut = {{"", {2, 0, 0}}};
+         }},
+        {"keep-out", [](Options& o) { o.domain.keepOut = {{"", {0, std::nan(""), 0}}}; }},
         {"clearance", [](Options& o) { o.fit.clearance = -0.1; }},
         {"sweeps", [](Options& o) { o.fit.sweeps = -1; }},
         {"fit-seconds", [](Options& o) { o.fit.seconds = -1; }},

@@ -43,7 +43,8 @@ RunReport sample() {
     r.regions[0].name = "outside";
     r.regions[0].parts = {0};
     r.regions[0].box.add(Vec3{1, 2, 3});
-    r.leaks = {{Vec3{1, 2, 3}, 0.5, "through body"}};
+    Leak& leak = r.leaks.emplace_back();
+    leak.place = {1, 2, 3}, leak.width = 0.5, leak.text = "through body", leak.area = 0.25, leak.box = Box{{0, 2, 3}, {2, 2, 3}};
     r.notes = {"a limit is out of reach"};
     r.checksum = "0123456789abcdef";
     return r;
@@ -111,6 +112,8 @@ TEST(ReportWrite, HasTheContractsKeys) {
     EXPECT_EQ(json["patches"][0]["faces"], 6);
     EXPECT_EQ(json["regions"][0]["parts"][0], "body");
     EXPECT_EQ(json["leaks"][0]["width"], 0.5);
+    EXPECT_EQ(json["leaks"][0]["area"], 0.25);
+    EXPECT_EQ(json["leaks"][0]["box"][1][0], 2);
     EXPECT_EQ(json["notes"], Json({"a limit is out of reach"}));
     EXPECT_EQ(json["stages"][0]["items"], 100);
 }
