@@ -21,11 +21,11 @@ namespace fs = std::filesystem;
 struct Case {
     const char* name;
     const char* sample;   // a built-in geometry, or null
-    const char* files;    // else real files: shared/ or openfoam/ and the file's name, separated by spaces
+    const char* files;    // else real files, separated by spaces: shared/ or openfoam/ and the name, or tutorials/ and the path among OpenFOAM's examples
     const char* options;
 };
 
-const std::array<Case, 14> cases{{
+const std::array<Case, 20> cases{{
     {"Engine2Cyl", nullptr, "shared/engine-2cyl.obj.gz", "--scale 0.001 --size 0.004"},
     {"MotorBike", nullptr, "openfoam/motorBike.obj.gz", "--size 0.02 --box -5 -4 0 15 4 8 --max-size 1"},
     {"MotorBikeLayers", nullptr, "openfoam/motorBike.obj.gz", "--size 0.03125 --layers 5"},
@@ -53,6 +53,18 @@ const std::array<Case, 14> cases{{
      "shared/drivaer-body.obj.gz shared/drivaer-frontWheels.obj.gz shared/drivaer-rearWheels.obj.gz",
      "--size 0.0625 --box -10 0 0 30 5 8 --max-size 1 --layers 5 --y-plus 100 --velocity 40 --viscosity 1.5e-5 --length 4.6 "
      "--part-layers '.*Wheels=2'"},
+    {"ShipHullHalf", nullptr, "openfoam/DTC-scaled.stl.gz", "--size 0.04 --box -16 -12 -10 18 0 4 --layers 3"},
+    {"CycloneThroughTheBox", nullptr, "openfoam/cyclone.stl.gz", "--size 0.03 --seed 0,0,0 --box -.55 -.52 -1.05 .55 .52 1.1 --layers 3"},
+    {"SleeveWithMembrane", nullptr, "openfoam/membrane-boundaries.stl.gz openfoam/membrane-membrane.stl.gz", "--size 0.08 --seed -2.3,0,0 --layers 3"},
+    {"Buildings", nullptr, "tutorials/incompressible/simpleFoam/windAroundBuildings/constant/triSurface/buildings.obj.gz",
+     "--size 3 --box -100 -100 0 400 300 200 --layers 3"},
+    {"Terrain", nullptr, "tutorials/incompressible/simpleFoam/turbineSiting/constant/triSurface/terrain.stl.gz",
+     "--size 20 --box 581321 4785280 900 582290 4786330 2000 --layers 3"},
+    {"StirredVesselOfTwoZones", nullptr,
+     "tutorials/multiphase/interFoam/RAS/mixerVesselAMI/constant/triSurface/vessel.stl.gz tutorials/multiphase/interFoam/RAS/mixerVesselAMI/constant/triSurface/sparger.stl.gz "
+     "tutorials/multiphase/interFoam/RAS/mixerVesselAMI/constant/triSurface/stirrer.stl.gz tutorials/multiphase/interFoam/RAS/mixerVesselAMI/constant/triSurface/shaft.stl.gz "
+     "tutorials/multiphase/interFoam/RAS/mixerVesselAMI/constant/triSurface/rotating.stl.gz",
+     "--size 0.016 --seed outer=.2,0,.9 --seed inner=.1,0,.4 --layers 2"},
 }};
 
 std::string textOf(const fs::path& path) {
@@ -87,9 +99,10 @@ class CaseFolder : public testing::Test {
         std::istringstream names(c.files);
         std::string all;
         for (std::string name; names >> name;) {
-            const bool ours = name.starts_with("shared/");
-            const fs::path place = ours ? fs::path(shared ? shared : I2B_GEOMETRY_DIR_DEFAULT)
-                                        : fs::path("/usr/share/doc/openfoam-examples/examples/resources/geometry");
+            const fs::path examples = "/usr/share/doc/openfoam-examples/examples";
+            const fs::path place = name.starts_with("shared/")      ? fs::path(shared ? shared : I2B_GEOMETRY_DIR_DEFAULT)
+                                   : name.starts_with("tutorials/") ? examples
+                                                                    : examples / "resources/geometry";
             const fs::path file = fs::weakly_canonical(place / name.substr(name.find('/') + 1));
             if (!fs::exists(file)) return "";
             all += fmt::format("'{}' ", file.string());
