@@ -94,6 +94,10 @@ TEST(Leaks, AreWhereTheHolesAre) {
         EXPECT_NEAR(leaks[1].width, 0.24, h / 4);
         EXPECT_THAT(leaks[1].text, testing::HasSubstr("zLow"));
         for (const Leak& leak : leaks) {
+            Vec3 area; // of its faces
+            for (const auto& [a, b, c, d] : leak.faces) area += cross(c - a, d - b) * 0.5;
+            EXPECT_NEAR(norm(area), leak.area, 1e-12);
+            EXPECT_GT(dot(area, leak.beyond - leak.place), 0); // towards the room
             EXPECT_TRUE(leak.keepOut);
             EXPECT_LT(norm(leak.beyond), 0.5); // the middle of the room
         }

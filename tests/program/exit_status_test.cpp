@@ -144,6 +144,9 @@ TEST_F(ExitStatus, LeaksAreTold) {
     const Outcome regions = run("regions" + rest);
     EXPECT_EQ(regions.status, 0) << regions.text;
     EXPECT_THAT(regions.text, HasSubstr("leak 0."));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "case/leaks.ply")); // not asked for
+    ASSERT_EQ(run("regions parts/wall.stl parts/outlet.stl --size 0.04 --keep-out duct=1,0,0.15 --quiet --format ply,report --out seen").status, 0);
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "seen/leaks.ply"));
     const Outcome closed = run("mesh parts/inlet.stl" + rest);
     EXPECT_EQ(closed.status, 0) << closed.text;
     EXPECT_EQ(closed.text, "");

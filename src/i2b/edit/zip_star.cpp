@@ -29,29 +29,73 @@ std::int32_t ZipStar::nowOf(std::int32_t point) const {
 
 void ZipStar::loopOf(std::int32_t face, const PointMove& move, std::vector<std::int32_t>& loop) const { loopOf(face, State::now, move, loop); }
 
+namespace {
+
+// Appends a point to a loop, but not the same one twice; closed: the end is before the beginning.
+void addPoint(std::vector<std::int32_t>& loop, std::int32_t point) {
+    if (loop.empty() || loop.back() != point) loop.push_back(point);
+}
+void closeLoop(std::vector<std::int32_t>& loop) {
+    while (loop.size() > 1 && loop.back() == loop.front()) loop.pop_back();
+}
+
+} // namespace
+
 void ZipStar::loopOf(std::int32_t face, State state, const PointMove& move, std::vector<std::int32_t>& loop) const {
     loop.clear();
-    const auto add = [&](std::int32_t p) {
-        if (state == State::now) p = nowOf(p);
-        if (p == move.gone && p >= 0) p = move.keep;
-        if (loop.empty() || loop.back() != p) loop.push_back(p);
-    };
     std::span<const std::int32_t> points = mesh_.face(face);
-    if (state == State::first || !isZipped_[Index(face)]) {
-        for (const std::int32_t p : points) add(p);
-    } else {
-        if (goneFaces_.contains(face)) return;
-        if (const auto at = loops_.find(face); at != loops_.end()) points = at->second;
-        for (Index i = 0; i < points.size(); ++i) {
-            const std::int32_t a = points[i], b = points[i + 1 == points.size() ? 0 : i + 1];
-            add(a);
-            const auto at = through_.find(edgeKey(a, b));
-            if (at == through_.end()) continue;
-            if (a < b) std::for_each(at->second.begin(), at->second.end(), add);
-            else std::for_each(at->second.rbegin(), at->second.rend(), add);
-        }
+    if (state == State::now && isZipped_[Index(face)]) {
+        const auto place = Index(zippedFaces_.placeOf(face));
+        points = std::span(loopPoints_).subspan(loopStart_[place], loopStart_[place + 1] - loopStart_[place]);
     }
-    while (loop.size() > 1 && loop.back() == loop.front()) loop.pop_back();
+    for (std::int32_t p : points) {
+        if (state == State::now) p = nowOf(p);
+        addPoint(loop, p == move.gone && p >= 0 ? move.keep : p);
+    }
+    closeLoop(loop);
+}
+
+// Of what the zips say, without a look at what is worked out.
+void ZipStar::loopOfZipped(std::int32_t face, std::vector<std::int32_t>& loop) const {
+    loop.clear();
+    if (goneFaces_.contains(face)) return;
+    std::span<const std::int32_t> points = mesh_.face(face);
+    if (const auto at = loops_.find(face); at != loops_.end()) points = at->second;
+    const auto add = [&](std::int32_t p) { addPoint(loop, nowOf(p)); };
+    for (Index i = 0; i < points.size(); ++i) {
+        const std::int32_t a = points[i], b = points[i + 1 == points.size() ? 0 : i + 1];
+        add(a);
+        const auto at = through_.find(edgeKey(a, b));
+        if (at == through_.end()) continue;
+        if (a < b) std::for_each(at->second.begin(), at->second.end(), add);
+        else std::for_each(at->second.rbegin(), at->second.rend(), add);
+    }
+    closeLoop(loop);
+}
+
+void ZipStar::resolveLoops() {
+    constexpr Index chunk = 1024;
+    zippedFaces_ = {};
+    for (const std::int32_t c : zipped_)
+        for (const std::int32_t f : cellFaces_[c]) {
+            if (isZipped_[Index(f)]) continue;
+            isZipped_[Index(f)] = true;
+            zippedFaces_.add(f);
+        }
+    zippedFaces_.close();
+    const std::vector<std::int32_t>& faces = zippedFaces_.items();
+    std::vector<std::vector<std::int32_t>> parts((faces.size() + chunk - 1) / chunk);
+    loopStart_.assign(faces.size() + 1, 0);
+    parallelChunks(faces.size(), chunk, [&](Index begin, Index end, Index part) {
+        std::vector<std::int32_t> loop;
+        for (Index i = begin; i < end; ++i) {
+            loopOfZipped(faces[i], loop);
+            loopStart_[i] = loop.size();
+            parts[part].insert(parts[part].end(), loop.begin(), loop.end());
+        }
+    });
+    loopPoints_.clear(), loopPoints_.reserve(exclusiveScan(loopStart_));
+    for (const std::vector<std::int32_t>& part : parts) loopPoints_.insert(loopPoints_.end(), part.begin(), part.end());
 }
 
 std::int32_t ZipStar::cellNow(std::int32_t cell) const {
@@ -89,8 +133,7 @@ void ZipStar::use(const std::vector<Zip>& zips, const std::map<std::int32_t, Vec
     for (const auto& [point, place] : places) apply({point, -1, place});
     for (auto& [now, cells] : members_) std::ranges::sort(cells);
     sortUnique(zipped_);
-    for (const std::int32_t c : zipped_)
-        for (const std::int32_t f : cellFaces_[c]) isZipped_[Index(f)] = true;
+    resolveLoops();
 }
 
 bool ZipStar::isSound(const Zip& zip) const {

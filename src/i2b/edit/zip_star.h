@@ -3,6 +3,7 @@
 #pragma once
 #include "i2b/assemble/mesh_topology.h"
 #include "i2b/assemble/poly_mesh.h"
+#include "i2b/core/numbering.h"
 #include "i2b/edit/changer.h"
 #include <cstdint>
 #include <map>
@@ -81,6 +82,8 @@ class ZipStar {
     bool isWall(std::int32_t face) const;
     LocalEdits::Surroundings around(State state, const PointMove& move, const std::vector<std::int32_t>& star, std::vector<std::int32_t>* ids = nullptr) const;
     void loopOf(std::int32_t face, State state, const PointMove& move, std::vector<std::int32_t>& loop) const;
+    void resolveLoops();
+    void loopOfZipped(std::int32_t face, std::vector<std::int32_t>& loop) const;
 
     PolyMesh& mesh_;
     const Rows& cellFaces_;
@@ -93,6 +96,9 @@ class ZipStar {
     std::unordered_map<std::int32_t, std::int32_t> cellOf_;
     std::unordered_map<std::int32_t, std::vector<std::int32_t>> members_;  // per lowest cell, ascending
     std::vector<std::int32_t> zipped_;                                     // cells around zips, ascending
+    Numbering zippedFaces_;                                                // theirs: what becomes of each is worked out once
+    std::vector<std::size_t> loopStart_;                                   // per such face, and the end
+    std::vector<std::int32_t> loopPoints_;
 };
 
 } // namespace i2b

@@ -170,6 +170,7 @@ Leak openingOf(const std::vector<Meeting>& faces, const SurfaceIndex& index) {
     for (const Meeting& m : faces) {
         way += m.face.normal * m.face.area;
         leak.box.add(m.face.centre);
+        leak.faces.push_back(m.face.corners);
         if (m.clearance > widest->clearance) widest = &m;
     }
     leak.area = norm(way); // of steps that lean to and fro what is seen along the way

@@ -49,14 +49,14 @@ RegionCells::Cell RegionCells::widest() const {
 RegionCells::Face RegionCells::faceBetween(const Cell& c, const Cell& beside, const Way& way) const {
     const Lattice& lattice = grid_.lattice;
     const Box a = lattice.cellBox(grid_.levels[c.level].level, c.at), b = lattice.cellBox(grid_.levels[beside.level].level, beside.at);
-    Face face{1, {}, {}};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const int k = static_cast<int>(i);
-        const double lo = std::max(a.lo[k], b.lo[k]), hi = std::min(a.hi[k], b.hi[k]);
-        face.centre[k] = i == way.axis ? (way.side ? a.hi[k] : a.lo[k]) : (lo + hi) / 2;
-        if (i != way.axis) face.area *= hi - lo;
-    }
-    face.normal[static_cast<int>(way.axis)] = way.side ? 1 : -1;
+    Vec3 lo, hi;
+    for (int k = 0; k < 3; ++k) lo[k] = std::max(a.lo[k], b.lo[k]), hi[k] = std::min(a.hi[k], b.hi[k]);
+    const int axis = static_cast<int>(way.axis), u = (axis + 1) % 3, v = (axis + 2) % 3;
+    lo[axis] = hi[axis] = way.side ? a.hi[axis] : a.lo[axis];
+    Face face{(hi[u] - lo[u]) * (hi[v] - lo[v]), {}, (lo + hi) / 2, {lo, lo, hi, lo}};
+    face.normal[axis] = way.side ? 1 : -1;
+    face.corners[way.side ? 1 : 3][u] = hi[u];
+    face.corners[way.side ? 3 : 1][v] = hi[v];
     return face;
 }
 

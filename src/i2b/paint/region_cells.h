@@ -21,9 +21,10 @@ class RegionCells {
         int side; // 0 low, 1 high
     };
     struct Face {
-        double area; // m^2
-        Vec3 normal; // unit, out of the cell
-        Vec3 centre; // m
+        double area;                 // m^2
+        Vec3 normal;                 // unit, out of the cell
+        Vec3 centre;                 // m
+        std::array<Vec3, 4> corners; // m, around it, normal by the right-hand rule
     };
 
     // Keeps a reference to grid. Measures the clearances of all cells.

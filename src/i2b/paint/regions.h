@@ -38,6 +38,7 @@ struct Leak {
     std::int32_t part = -1; // nearest to its widest place
     bool keepOut = false;   // leads to a place that the flow must not reach:
     Vec3 beyond;            // m, where it is widest around that, or around the second seed
+    std::vector<std::array<Vec3, 4>> faces{}; // m, corners of the cells' faces in the opening, their normals towards what is beyond
 };
 
 struct Regions {

@@ -108,7 +108,7 @@ struct Parser {
         app.set_version_flag("--version", "i2b " I2B_VERSION);
         addMesher("mesh", "Make the whole mesh", Command::mesh);
         addMesher("grid", "Make the Cartesian grid alone and write grid.vdb", Command::grid);
-        addMesher("regions", "Show what would be painted: regions, seeds, leaks; with --out, also as grid.vdb", Command::regions);
+        addMesher("regions", "Show what would be painted: regions, seeds, leaks; with --out, also as grid.vdb and leaks.ply", Command::regions);
         CLI::App& inspect = command("inspect", "Show what the geometry holds", Command::inspect);
         inspect.add_option("files", files, "The geometry files")->type_name("FILE")->required();
         addShared(inspect, {"scale", "feature-angle", "feature-lines", "feature-part", "feature-box", "threads",

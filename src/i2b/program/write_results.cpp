@@ -5,6 +5,7 @@
 #include "i2b/quality/cell_quality.h"
 #include "i2b/write/atomic_folder.h"
 #include "i2b/write/foam_write.h"
+#include "i2b/write/leaks_write.h"
 #include "i2b/write/ply_write.h"
 #include "i2b/write/report_write.h"
 #include "i2b/write/vdb_write.h"
@@ -72,6 +73,10 @@ void writeGridFile(const GridResult& result, const RunReport& report, const Opti
     writeVdb(input, folder.place("grid.vdb"), vdb, context);
 }
 
+void writeLeaksFile(const GridResult& result, const OutputOptions& output, AtomicFolder& folder) {
+    if (output.wants("ply") && !result.regions.leaks.empty()) writeLeaks(result.regions.leaks, folder.place("leaks.ply"));
+}
+
 void writeReportFile(RunReport& report, const OutputOptions& output, AtomicFolder& folder,
                      const CompleteReport& complete) {
     complete(report);
@@ -87,6 +92,7 @@ void writeMeshResults(MeshResult& result, const Options& options, Context& conte
     result.mesh = {}, result.cells = {}, result.walls = {}, result.wallNodes = {}, giveUp(result.offCauses); // on the disk by now
     returnFreedMemory();
     writeGridFile(*result.cartesian, result.report, options, folder, context);
+    writeLeaksFile(*result.cartesian, options.output, folder);
     writeReportFile(result.report, options.output, folder, complete);
     context.checkCancelled();
     folder.commit();
@@ -96,6 +102,7 @@ void writeGridResults(const GridResult& result, RunReport& report, const Options
                       const CompleteReport& complete) {
     AtomicFolder folder(options.output.folder);
     writeGridFile(result, report, options, folder, context);
+    writeLeaksFile(result, options.output, folder);
     writeReportFile(report, options.output, folder, complete);
     context.checkCancelled();
     folder.commit();

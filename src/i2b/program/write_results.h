@@ -15,7 +15,7 @@ using CompleteReport = std::function<void(RunReport&)>;
 // Cancelled.
 void writeMeshResults(MeshResult& result, const Options& options, Context& context,
                       const CompleteReport& complete);
-// grid.vdb and the report.
+// grid.vdb, leaks.ply where there are any, and the report.
 void writeGridResults(const GridResult& result, RunReport& report, const Options& options, Context& context,
                       const CompleteReport& complete);
 

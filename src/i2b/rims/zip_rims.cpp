@@ -63,9 +63,11 @@ void Zipper::shape(const std::vector<Index>& turn) {
 
 // All in turns, in their order; whether there is hope for others, which the first turn of all tells.
 bool Zipper::shapeWorse(bool isFirst) {
+    std::vector<std::uint8_t> isSound(zips_.size(), 0);
+    parallelFor(zips_.size(), [&](Index i) { isSound[i] = isWorse_[i] && star_.isSound(zips_[i]); }, 1);
     std::vector<Index> left;
     for (Index i = 0; i < zips_.size(); ++i)
-        if (isWorse_[i] && star_.isSound(zips_[i])) left.push_back(i);
+        if (isSound[i]) left.push_back(i);
     while (!left.empty()) {
         std::vector<Index> turn, later;
         std::vector<bool> isTaken(isChanged_.size());
