@@ -1,5 +1,7 @@
 #include "i2b/edit/zip_star.h"
+#include "i2b/core/collect.h"
 #include "i2b/core/parallel.h"
+#include "i2b/core/parallel_sort_unique.h"
 #include "i2b/core/sort_unique.h"
 #include "i2b/edit/small_mesh.h"
 #include "i2b/quality/dictionary_measure.h"
@@ -288,18 +290,23 @@ void ZipStar::apply(const PointMove& move) {
 
 // Points that no face has any more, ascending.
 std::vector<std::int32_t> ZipStar::pointsGone() const {
-    std::vector<std::int32_t> before, now, loop, gone;
+    const std::vector<std::int32_t>& faces = zippedFaces_.items();
+    std::vector<std::int32_t> before, now, gone;
     for (const auto& [point, to] : joined_) before.push_back(point);
-    for (const std::int32_t c : zipped_) {
-        for (const std::int32_t f : cellFaces_[c]) {
-            const auto v = mesh_.face(f);
-            before.insert(before.end(), v.begin(), v.end());
-            if (isWithin(f)) continue;
-            loopOf(f, {}, loop);
-            if (loop.size() > 2) now.insert(now.end(), loop.begin(), loop.end());
-        }
-    }
-    sortUnique(before), sortUnique(now);
+    const auto add = [&](std::vector<std::int32_t>& all, const auto& pointsOf) {
+        const RawVector<std::int32_t> found = collect<std::int32_t>(faces.size(), [&](Index i, const auto& put) {
+            for (const std::int32_t p : pointsOf(faces[i])) put(p);
+        }, 1024);
+        all.insert(all.end(), found.begin(), found.end());
+        parallelSortUnique(all);
+    };
+    add(before, [&](std::int32_t f) { return mesh_.face(f); });
+    add(now, [&](std::int32_t f) {
+        std::vector<std::int32_t> loop;
+        if (!isWithin(f)) loopOf(f, {}, loop);
+        if (loop.size() < 3) loop.clear();
+        return loop;
+    });
     std::ranges::set_difference(before, now, std::back_inserter(gone));
     return gone;
 }

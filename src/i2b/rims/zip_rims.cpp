@@ -24,12 +24,13 @@ class Zipper {
     void judgeChanged();
     bool isNoWorse(Index i) const { return star_.isSound(zips_[i]) && star_.isNoWorse(zips_[i], before_[i], limits_); }
     bool shapeWorse(bool isFirst);
-    void shape(const std::vector<Index>& turn);
+    using Cells = std::vector<std::int32_t>;
+    void shape(const std::vector<Index>& turn, const std::vector<Cells>& around);
     double excessOf(Index i) const;
     std::vector<std::uint8_t> worstOfWorse() const;
     bool open(const std::vector<std::uint8_t>& opens);
-    void markChanged(const Zip& zip) {
-        for (const std::int32_t c : star_.withNeighbours(zip.star)) isChanged_[Index(c)] = true;
+    void markChanged(const Cells& cells) {
+        for (const std::int32_t c : cells) isChanged_[Index(c)] = true;
     }
 
     ZipStar& star_;
@@ -50,21 +51,25 @@ void Zipper::judgeChanged() {
     isChanged_.assign(isChanged_.size(), false);
 }
 
-// Zips that share no cell, side by side.
-void Zipper::shape(const std::vector<Index>& turn) {
+// Zips that share no cell, side by side. around: the cells of each zip and those beside them.
+void Zipper::shape(const std::vector<Index>& turn, const std::vector<Cells>& around) {
     std::vector<std::vector<std::pair<std::int32_t, Vec3>>> places(turn.size());
     parallelFor(turn.size(), [&](Index k) { places[k] = shapeZip(star_, zips_[turn[k]], limits_); }, 1);
     for (Index k = 0; k < turn.size(); ++k) {
         if (places[k].empty()) continue;
         for (const auto& [point, place] : places[k]) places_[point] = place, star_.apply({point, -1, place});
-        markChanged(zips_[turn[k]]);
+        markChanged(around[turn[k]]);
     }
 }
 
 // All in turns, in their order; whether there is hope for others, which the first turn of all tells.
 bool Zipper::shapeWorse(bool isFirst) {
     std::vector<std::uint8_t> isSound(zips_.size(), 0);
-    parallelFor(zips_.size(), [&](Index i) { isSound[i] = isWorse_[i] && star_.isSound(zips_[i]); }, 1);
+    std::vector<Cells> around(zips_.size());
+    parallelFor(zips_.size(), [&](Index i) {
+        isSound[i] = isWorse_[i] && star_.isSound(zips_[i]);
+        if (isSound[i]) around[i] = star_.withNeighbours(zips_[i].star);
+    }, 1);
     std::vector<Index> left;
     for (Index i = 0; i < zips_.size(); ++i)
         if (isSound[i]) left.push_back(i);
@@ -72,15 +77,14 @@ bool Zipper::shapeWorse(bool isFirst) {
         std::vector<Index> turn, later;
         std::vector<bool> isTaken(isChanged_.size());
         for (const Index i : left) {
-            const std::vector<std::int32_t> around = star_.withNeighbours(zips_[i].star);
-            if (std::ranges::any_of(around, [&](std::int32_t c) { return isTaken[Index(c)]; })) {
+            if (std::ranges::any_of(around[i], [&](std::int32_t c) { return isTaken[Index(c)]; })) {
                 later.push_back(i);
                 continue;
             }
-            for (const std::int32_t c : around) isTaken[Index(c)] = true;
+            for (const std::int32_t c : around[i]) isTaken[Index(c)] = true;
             turn.push_back(i);
         }
-        shape(turn);
+        shape(turn, around);
         if (isFirst && turn.size() >= sample) {
             parallelFor(turn.size(), [&](Index k) { isWorse_[turn[k]] = !isNoWorse(turn[k]); }, 1);
             const auto good = static_cast<Index>(std::ranges::count_if(turn, [&](Index i) { return !isWorse_[i]; }));
@@ -124,7 +128,7 @@ bool Zipper::open(const std::vector<std::uint8_t>& opens) {
     std::map<std::int32_t, Vec3> places;
     for (Index i = 0; i < zips_.size(); ++i) {
         if (opens[i]) {
-            markChanged(zips_[i]);
+            markChanged(star_.withNeighbours(zips_[i].star));
             continue;
         }
         if (kept < i) zips_[kept] = std::move(zips_[i]), before_[kept] = before_[i], isWorse_[kept] = isWorse_[i];
