@@ -132,7 +132,7 @@ Painted::Painted(const RandomCase& c) : soup(c.soup), index(std::make_unique<Sur
     grid = buildCellGrid(field, wantedCells(field, target));
     cut = cutLeafCells(soup, field, grid, target);
     regions = labelRegions(grid, cut);
-    chooseRegions(regions, grid, cut, c.options.domain);
+    chooseRegions(regions, grid, *index, c.options.domain);
 }
 
 CarvedAtRandom::CarvedAtRandom(unsigned seed, const Index3& count, int levels, int buffer, double closed, bool perAxis) {

@@ -1,5 +1,5 @@
-// Proves: seeds paint the region they lie in and carry its name; what cannot be painted is refused with a
-// place to go instead; without seeds the largest region of the asked kind is chosen.
+// Proves: seeds paint the region they lie in and give it their name; what cannot be painted is refused with a
+// way out; without seeds the largest region of the asked kind is chosen.
 #include "paint/random_grid.h"
 #include <gmock/gmock.h>
 
@@ -23,7 +23,7 @@ struct Room {
         regions = labelRegions(grid, cut);
     }
     const Region& at(std::size_t i) const { return regions.table[i]; } // 0: outside, 1: inside
-    void choose(const DomainOptions& domain) { chooseRegions(regions, grid, cut, domain); }
+    void choose(const DomainOptions& domain) { chooseRegions(regions, grid, SurfaceIndex(Surface{}), domain); }
     CellGrid grid;
     CutCells cut;
     Regions regions;
@@ -95,14 +95,18 @@ TEST(ChooseRegions, TwoSeedsInOneRegion) {
 TEST(ChooseRegions, RefusesWithARemedy) {
     EXPECT_THAT(refusal(Room(), with(Flow::automatic, {{"x", {4, 4, 9}}})),
                 testing::HasSubstr("outside the domain box"));
-    const std::string inWall = refusal(Room(), with(Flow::automatic, {{"x", {1.5, 4, 4}}}));
-    EXPECT_THAT(inWall, testing::HasSubstr("cell that the geometry cuts"));
-    EXPECT_THAT(inWall, testing::HasSubstr("for example to (0.5 0.5 0.5)"));
     EXPECT_THAT(refusal(Room(false), with(Flow::internal)), testing::HasSubstr("encloses no region"));
     Room full;
     full.cut.levels = {full.grid.levels[0].cells};
     full.regions = labelRegions(full.grid, full.cut);
     EXPECT_THAT(refusal(std::move(full), with(Flow::external)), testing::HasSubstr("cuts every cell"));
+    Room corner; // one open cell, out of sight
+    corner.cut.levels[0] = std::make_shared<Mask>(*corner.grid.levels[0].cells);
+    corner.cut.levels[0]->setValueOff(toCoord({0, 0, 0}));
+    corner.regions = labelRegions(corner.grid, corner.cut);
+    const std::string inWall = refusal(std::move(corner), with(Flow::automatic, {{"x", {0.5, 4.5, 4.5}}}));
+    EXPECT_THAT(inWall, testing::HasSubstr("cell that the geometry cuts"));
+    EXPECT_THAT(inWall, testing::HasSubstr("give a smaller --size"));
 }
 
 } // namespace

@@ -47,8 +47,9 @@ class Room {
         const CellGrid grid = buildCellGrid(field, wantedCells(field, at));
         const CutCells cut = cutLeafCells(surface_, field, grid, at);
         Regions regions = labelRegions(grid, cut);
-        chooseRegions(regions, grid, cut, domain);
-        return findLeaks(regions, grid, SurfaceIndex(surface_), domain);
+        const SurfaceIndex index(surface_);
+        chooseRegions(regions, grid, index, domain);
+        return findLeaks(regions, grid, index, domain);
     }
 
   private:
@@ -128,8 +129,12 @@ TEST(Leaks, BetweenTwoPlacesInTheOpenIsNoOpening) {
     EXPECT_THAT(leaks[0].text, testing::HasSubstr("nothing narrow"));
 }
 
-TEST(Leaks, RefusesPlacesInWalls) {
-    EXPECT_THROW(Room({}).leaks(keepOutOf({1, 0, 0})), Error);
+// A place beside a wall is as good as one in the middle, but one in the wall is on no side of it.
+TEST(Leaks, PlacesBesideWallsWillDo) {
+    const Room room({{1, 0, 0.1, 0.1, 0.2, 0.2}});
+    EXPECT_EQ(room.leaks(keepOutOf({1 - 0.2 * h, 0, 0})).size(), 1u);
+    EXPECT_EQ(room.leaks(keepOutOf({1 + 0.2 * h, 0, 0}))[0].area, 0); // outside: in the open
+    EXPECT_THROW(room.leaks(keepOutOf({1, 0, 0})), Error);
     EXPECT_THROW(Room({}).leaks(keepOutOf({3, 0, 0})), Error);
 }
 

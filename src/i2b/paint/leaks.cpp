@@ -1,7 +1,7 @@
 #include "i2b/paint/leaks.h"
 #include "i2b/core/collect.h"
-#include "i2b/paint/paint.h"
 #include "i2b/paint/region_cells.h"
+#include "i2b/paint/spots.h"
 #include "i2b/paint/union_find.h"
 #include <algorithm>
 #include <array>
@@ -228,8 +228,12 @@ class Search {
 
 std::vector<Leak> findLeaks(const Regions& regions, const CellGrid& grid, const SurfaceIndex& index, const DomainOptions& domain) {
     std::vector<std::vector<Seed>> seedsOf(regions.table.size()), placesOf(regions.table.size());
-    for (const Seed& seed : domain.seeds) seedsOf[static_cast<std::size_t>(regionAt(regions, grid, seed.place, "seed"))].push_back(seed);
-    for (const Seed& place : domain.keepOut) placesOf[static_cast<std::size_t>(regionAt(regions, grid, place.place, "place to keep out of"))].push_back(place);
+    const auto add = [&](const Seed& named, const char* what, std::vector<std::vector<Seed>>& places) {
+        const Spot spot = spotAt(regions, grid, index, named.place, what);
+        places[static_cast<std::size_t>(spot.region)].push_back({named.name, spot.place});
+    };
+    for (const Seed& seed : domain.seeds) add(seed, "seed", seedsOf);
+    for (const Seed& place : domain.keepOut) add(place, "place to keep out of", placesOf);
     std::vector<Leak> leaks;
     if (index.surface().triangles.empty()) return leaks; // nothing holds places apart
     for (const Region& region : regions.table) {

@@ -1,6 +1,7 @@
 // Painting: label every face-connected region of cells that the geometry does not meet, all at once and across
 // levels; then choose the regions to mesh from seeds or by the kind of flow.
 #pragma once
+#include "i2b/geometry/surface_index.h"
 #include "i2b/options.h"
 #include "i2b/paint/regions.h"
 
@@ -10,10 +11,7 @@ namespace i2b {
 // numbers regions by first cell (level, then lattice order). Same result on any number of threads.
 Regions labelRegions(const CellGrid& grid, const CutCells& cut);
 
-// The region that a place lies in. Throws Error where that is outside the box or in a cut cell; what: names the place there.
-std::int32_t regionAt(const Regions& regions, const CellGrid& grid, const Vec3& place, const char* what);
-
-// Marks the regions to mesh, and gives them the names of their seeds. Throws Error where a seed is in none, or nothing is left.
-void chooseRegions(Regions& regions, const CellGrid& grid, const CutCells& cut, const DomainOptions& domain);
+// Marks the regions to mesh, and gives them the names of their seeds. Throws Error where a seed is in none (spots.h), or nothing is left.
+void chooseRegions(Regions& regions, const CellGrid& grid, const SurfaceIndex& index, const DomainOptions& domain);
 
 } // namespace i2b

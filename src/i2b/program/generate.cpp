@@ -45,10 +45,10 @@ CellGrid gridOf(const Surface& surface, const SizeField& field, CutCells& cut) {
     return grid;
 }
 
-Regions regionsOf(const Surface& surface, const SizeField& field, const CellGrid& grid, const CutCells& cut, const DomainOptions& domain) {
+Regions regionsOf(const SurfaceIndex& index, const SizeField& field, const CellGrid& grid, const CutCells& cut, const DomainOptions& domain) {
     Regions regions = labelRegions(grid, cut);
-    findTouchedParts(regions, surface, field, grid, cut);
-    chooseRegions(regions, grid, cut, domain);
+    findTouchedParts(regions, index.surface(), field, grid, cut);
+    chooseRegions(regions, grid, index, domain);
     return regions;
 }
 
@@ -63,7 +63,7 @@ void addGapsInFlow(SizeField& field, const Surface& surface, const SurfaceIndex&
     CutCells cut;
     const CellGrid grid = gridOf(surface, everywhere, cut);
     context.checkCancelled();
-    const KeptCells kept = carve(grid, cut, regionsOf(surface, everywhere, grid, cut, options.domain), index, options.fit);
+    const KeptCells kept = carve(grid, cut, regionsOf(index, everywhere, grid, cut, options.domain), index, options.fit);
     context.checkCancelled();
     const FlowLookup flow(grid, kept, index);
     std::vector<std::uint8_t> reached(gaps.size());
@@ -197,7 +197,7 @@ std::unique_ptr<GridResult> generateGrid(const Options& options, Context& contex
     r.grid = stage(
         context, "grid", [&] { return gridOf(r.surface, r.field, r.cut); }, [](const CellGrid& g) { return g.cellCount(); });
     r.regions = stage(
-        context, "paint", [&] { return regionsOf(r.surface, r.field, r.grid, r.cut, options.domain); },
+        context, "paint", [&] { return regionsOf(*r.index, r.field, r.grid, r.cut, options.domain); },
         [](const Regions& regions) { return regions.table.size(); });
     if (!options.domain.keepOut.empty() || options.domain.seeds.size() > 1)
         r.regions.leaks = stage(
