@@ -122,6 +122,18 @@ TEST(Leaks, SeedsOfTwoNamesHaveThoseBetweenThem) {
     EXPECT_TRUE(room.leaks(domain).empty());
 }
 
+// Each pair of places has its own openings, though they are the same ones.
+TEST(Leaks, ArePerPairOfPlaces) {
+    DomainOptions domain = keepOutOf({0, 0, 0});
+    domain.keepOut.push_back({"", {0.5, 0.5, 0.5}});
+    const std::vector<Leak> leaks = Room({{1, 0, 0.1, 0.1, 0.2, 0.2}, {0, 1, 0, 0, 0.1, 0.3}}).leaks(domain);
+    ASSERT_EQ(leaks.size(), 4u);
+    EXPECT_EQ(leaks[0].pair, leaks[1].pair);
+    EXPECT_NE(leaks[1].pair, leaks[2].pair);
+    EXPECT_EQ(leaks[0].place, leaks[2].place);
+    EXPECT_GT(leaks[0].width, leaks[1].width);
+}
+
 TEST(Leaks, BetweenTwoPlacesInTheOpenIsNoOpening) {
     const std::vector<Leak> leaks = Room({}).leaks(keepOutOf({1.6, 1.6, 1.6}));
     ASSERT_EQ(leaks.size(), 1u);

@@ -141,6 +141,9 @@ TEST_F(ExitStatus, LeaksAreTold) {
     EXPECT_EQ(open.status, 1) << open.text;
     EXPECT_THAT(open.text, AllOf(HasSubstr("the flow and 'duct' reach each other: an opening beside wall"), HasSubstr("the widest of 1 opening")));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "case"));
+    const Outcome air = run("mesh parts/wall.stl --size 0.04 --keep-out 1,0,2 --quiet --format report --out case");
+    EXPECT_EQ(air.status, 1);
+    EXPECT_THAT(air.text, AllOf(HasSubstr("nothing narrow is between them"), HasSubstr("give another place to keep out of")));
     const Outcome regions = run("regions" + rest);
     EXPECT_EQ(regions.status, 0) << regions.text;
     EXPECT_THAT(regions.text, HasSubstr("leak 0."));

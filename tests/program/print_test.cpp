@@ -14,6 +14,19 @@ RunReport sample() {
     return report;
 }
 
+// An opening with its place, size and extent; of many the first.
+TEST(RegionsText, TellsLeaks) {
+    Regions regions;
+    Leak& leak = regions.leaks.emplace_back();
+    leak.place = {1, 2, 3}, leak.width = 0.25, leak.area = 0.5, leak.box = Box{{0, 2, 3}, {2, 2, 4}}, leak.text = "'a' and 'b' reach each other";
+    EXPECT_THAT(regionsText(regions, {}), HasSubstr("leak 0.25 m wide at 1,2,3, 0.5 m2, from (0 2 3) to (2 2 4): 'a' and 'b' reach each other\n"));
+    regions.leaks.resize(60, regions.leaks.front());
+    EXPECT_THAT(regionsText(regions, {}), HasSubstr("and 10 leaks more\n"));
+    regions.leaks.resize(1);
+    regions.leaks[0].area = 0;
+    EXPECT_THAT(regionsText(regions, {}), HasSubstr("at 1,2,3: 'a'"));
+}
+
 // How many places, then the first three with number, place, part, distance and cause.
 TEST(SummaryText, NamesTheWorstPlaces) {
     RunReport report = sample();

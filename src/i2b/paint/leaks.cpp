@@ -14,7 +14,7 @@ namespace {
 using Cell = RegionCells::Cell;
 enum Side : std::uint8_t { neither, here, beyond };
 constexpr double perOctave = 16;  // steps of distance in which cells are flooded
-constexpr double narrower = 0.5;  // of the distance at the wider end: what is no nearer to the geometry is no opening
+constexpr double narrower = 0.7;  // of the distance at the wider end: what is no nearer to the geometry is no opening
 constexpr double together = 1.5;  // edges of its cell: so near to another a face is of one opening with it
 
 // From a cell to the one around which all are nearer to the geometry.
@@ -215,7 +215,8 @@ class Search {
         } else {
             for (Leak& leak : found) leak.text = text + ": an opening beside " + index_.surface().parts[static_cast<std::size_t>(leak.part)].name;
         }
-        for (Leak& leak : found) leak.keepOut = keepOut, leak.beyond = cells_.centre(end);
+        const std::int32_t pair = leaks.empty() ? 0 : leaks.back().pair + 1;
+        for (Leak& leak : found) leak.pair = pair, leak.keepOut = keepOut, leak.beyond = cells_.centre(end);
         leaks.insert(leaks.end(), found.begin(), found.end());
     }
 

@@ -36,6 +36,7 @@ struct Leak {
     double area = 0;        // m^2, of cells in it as seen along the way through: what is within a cell of its rim is left out; 0: no opening, all is open
     Box box;                // m
     std::int32_t part = -1; // nearest to its widest place
+    std::int32_t pair = 0;  // of places: those between the same two follow each other, the widest first
     bool keepOut = false;   // leads to a place that the flow must not reach:
     Vec3 beyond;            // m, where it is widest around that, or around the second seed
     std::vector<std::array<Vec3, 4>> faces{}; // m, corners of the cells' faces in the opening, their normals towards what is beyond

@@ -94,14 +94,17 @@ bool hasCellAt(const CellGrid& grid, const std::vector<Mask::Ptr>& levels, const
 // Refuses a mesh with cells where the flow must not come. Paint may come there where cells do not: through an opening no wider than one.
 void refuseWhereKeptOut(const GridResult& r, std::vector<std::string>& notes) {
     const std::vector<Leak>& leaks = r.regions.leaks;
-    for (auto first = leaks.begin(), next = first; first != leaks.end(); first = next) { // those to one place follow each other, the widest first
-        next = std::find_if(first, leaks.end(), [&](const Leak& l) { return !(l.beyond == first->beyond); });
+    for (auto first = leaks.begin(), next = first; first != leaks.end(); first = next) {
+        next = std::find_if(first, leaks.end(), [&](const Leak& l) { return l.pair != first->pair; });
         if (!first->keepOut) continue;
-        const std::string opening = fmt::format("the widest of {} opening{}, {:.3g} m wide, at ({:.6g} {:.6g} {:.6g})", next - first, next - first > 1 ? "s" : "",
-                                                first->width, first->place.x, first->place.y, first->place.z);
+        std::string opening;
+        if (first->area > 0)
+            opening = fmt::format("the widest of {} opening{}, {:.3g} m wide, at ({:.6g} {:.6g} {:.6g})", next - first, next - first > 1 ? "s" : "",
+                                  first->width, first->place.x, first->place.y, first->place.z);
         if (hasCellAt(r.grid, r.kept.levels, first->beyond))
-            throw Error(ErrorKind::input, first->text, opening, "close it, or give cells larger than it there; i2b regions lists all openings");
-        notes.push_back(first->text + ", but no cells go through " + opening);
+            throw Error(ErrorKind::input, first->text, opening,
+                        first->area > 0 ? "close it, or give cells larger than it there; i2b regions lists all openings" : "give another place to keep out of");
+        notes.push_back(fmt::format("{}, but cells do not: {}", first->text, opening));
     }
 }
 

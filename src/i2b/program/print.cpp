@@ -125,11 +125,14 @@ std::string regionsText(const Regions& regions, const std::vector<ReportPart>& p
             text += regionLine(*region, parts);
     }
     if (small) text += fmt::format("and {} regions smaller than {:.2g} m3\n", small, least);
-    for (const Leak& leak : regions.leaks) {
+    constexpr std::size_t mostLeaks = 50; // a report has all
+    for (std::size_t i = 0; i < std::min(mostLeaks, regions.leaks.size()); ++i) {
+        const Leak& leak = regions.leaks[i];
         text += fmt::format("leak {:.4g} m wide at {:.6g},{:.6g},{:.6g}", leak.width, leak.place.x, leak.place.y, leak.place.z);
         if (leak.area > 0) text += fmt::format(", {:.3g} m2, from {} to {}", leak.area, placeText(leak.box.lo), placeText(leak.box.hi));
         text += ": " + leak.text + "\n";
     }
+    if (regions.leaks.size() > mostLeaks) text += fmt::format("and {} leaks more\n", regions.leaks.size() - mostLeaks);
     return text;
 }
 
