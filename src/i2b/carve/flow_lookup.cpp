@@ -1,19 +1,8 @@
 #include "i2b/carve/flow_lookup.h"
-#include "i2b/grid/mask_ops.h"
+#include "i2b/grid/leaf_cell.h"
 #include "i2b/grid/neighbours.h"
 
 namespace i2b {
-namespace {
-
-// Level of the leaf cell that holds a place.
-std::size_t levelAt(const CellGrid& grid, const Vec3& place) {
-    for (std::size_t k = grid.levels.size(); k-- > 0;) { // places asked for lie beside walls, where cells are fine
-        if (grid.levels[k].cells->isValueOn(toCoord(grid.lattice.cellAt(grid.levels[k].level, place)))) return k;
-    }
-    return grid.levels.size();
-}
-
-} // namespace
 
 // Is there a kept cell at `from`, of a level that may touch the given one's cells, whose centre sees the place?
 bool FlowLookup::isSeen(const Vec3& place, const Vec3& from, std::size_t level) const {
@@ -28,8 +17,9 @@ bool FlowLookup::isSeen(const Vec3& place, const Vec3& from, std::size_t level) 
 
 bool FlowLookup::reaches(const Vec3& place) const {
     const Box domain = grid_.lattice.domain();
-    const std::size_t level = domain.contains(place) ? levelAt(grid_, place) : grid_.levels.size();
-    if (level == grid_.levels.size()) return false;
+    const std::optional<LeafCell> cell = leafCellAt(grid_, place);
+    if (!cell) return false;
+    const std::size_t level = cell->level;
     if (isSeen(place, place, level)) return true;
     const Vec3 h = grid_.lattice.cellSize(grid_.levels[level].level);
     for (int i = 0; i < 27; ++i) {

@@ -1,6 +1,6 @@
 #include "i2b/paint/spots.h"
 #include "i2b/core/error.h"
-#include "i2b/grid/mask_ops.h"
+#include "i2b/grid/leaf_cell.h"
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -11,19 +11,6 @@ constexpr int around = 3;            // cells
 constexpr std::uint64_t pocket = 64; // cells: smaller regions come last
 
 std::string textOf(const Vec3& p) { return fmt::format("({:g} {:g} {:g})", p.x, p.y, p.z); }
-
-struct LeafCell {
-    std::size_t level;
-    Index3 at;
-};
-
-LeafCell cellAt(const CellGrid& grid, const Vec3& place) {
-    for (std::size_t l = 0; l + 1 < grid.levels.size(); ++l) {
-        const Index3 c = grid.lattice.cellAt(grid.levels[l].level, place);
-        if (grid.levels[l].cells->isValueOn(toCoord(c))) return {l, c};
-    }
-    return {grid.levels.size() - 1, grid.lattice.cellAt(grid.levels.back().level, place)};
-}
 
 // Of an open cell, or -1.
 std::int32_t regionOf(const Regions& regions, const LeafCell& cell) {
@@ -38,16 +25,15 @@ std::int32_t regionOf(const Regions& regions, const LeafCell& cell) {
 
 // The open cells around, the nearest first.
 std::vector<Spot> openAround(const Regions& regions, const CellGrid& grid, const Vec3& place) {
-    const Vec3 size = grid.lattice.cellSize(grid.levels[cellAt(grid, place).level].level);
+    const Vec3 size = grid.lattice.cellSize(grid.levels[leafCellAt(grid, place)->level].level); // leaf cells cover the domain
     std::vector<Spot> spots;
     for (int x = -around; x <= around; ++x)
         for (int y = -around; y <= around; ++y)
             for (int z = -around; z <= around; ++z) {
                 const Vec3 near = place + Vec3{x * size.x, y * size.y, z * size.z};
-                if (!grid.lattice.domain().contains(near)) continue;
-                const LeafCell cell = cellAt(grid, near);
-                if (const std::int32_t region = regionOf(regions, cell); region >= 0)
-                    spots.push_back({region, grid.lattice.cellBox(grid.levels[cell.level].level, cell.at).centre()});
+                const std::optional<LeafCell> cell = leafCellAt(grid, near);
+                if (const std::int32_t region = cell ? regionOf(regions, *cell) : -1; region >= 0)
+                    spots.push_back({region, grid.lattice.cellBox(grid.levels[cell->level].level, cell->at).centre()});
             }
     std::ranges::stable_sort(spots, {}, [&](const Spot& s) { return norm2(s.place - place); });
     std::ranges::stable_partition(spots, [&](const Spot& s) { return regions.table[static_cast<std::size_t>(s.region)].cells >= pocket; });
@@ -62,7 +48,7 @@ Spot spotAt(const Regions& regions, const CellGrid& grid, const SurfaceIndex& in
         throw Error(ErrorKind::input, fmt::format("the {} lies outside the domain box", what), textOf(place),
                     fmt::format("choose one between {} and {}", textOf(domain.lo), textOf(domain.hi)));
     }
-    if (const std::int32_t region = regionOf(regions, cellAt(grid, place)); region >= 0) return {region, place};
+    if (const std::int32_t region = regionOf(regions, *leafCellAt(grid, place)); region >= 0) return {region, place};
     const std::vector<Spot> spots = openAround(regions, grid, place);
     for (const Spot& spot : spots)
         if (!index.firstHit(place, spot.place)) return spot;

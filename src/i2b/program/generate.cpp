@@ -12,6 +12,7 @@
 #include "i2b/geometry/rims.h"
 #include "i2b/grid/build.h"
 #include "i2b/grid/cut.h"
+#include "i2b/grid/leaf_cell.h"
 #include "i2b/paint/leaks.h"
 #include "i2b/paint/paint.h"
 #include "i2b/paint/touched_parts.h"
@@ -85,12 +86,6 @@ void noteLeftOut(const std::vector<Region>& parts, std::vector<std::string>& not
                                 cells, parts.size(), parts.size() > 1 ? "s" : "", largest.seed.x, largest.seed.y, largest.seed.z));
 }
 
-bool hasCellAt(const CellGrid& grid, const std::vector<Mask::Ptr>& levels, const Vec3& place) {
-    for (std::size_t l = 0; l < levels.size(); ++l)
-        if (levels[l]->isValueOn(toCoord(grid.lattice.cellAt(grid.levels[l].level, place)))) return true;
-    return false;
-}
-
 // Refuses a mesh with cells where the flow must not come. Paint may come there where cells do not: through an opening no wider than one.
 void refuseWhereKeptOut(const GridResult& r, std::vector<std::string>& notes) {
     const std::vector<Leak>& leaks = r.regions.leaks;
@@ -101,7 +96,8 @@ void refuseWhereKeptOut(const GridResult& r, std::vector<std::string>& notes) {
         if (first->area > 0)
             opening = fmt::format("the widest of {} opening{}, {:.3g} m wide, at ({:.6g} {:.6g} {:.6g})", next - first, next - first > 1 ? "s" : "",
                                   first->width, first->place.x, first->place.y, first->place.z);
-        if (hasCellAt(r.grid, r.kept.levels, first->beyond))
+        const LeafCell beyond = *leafCellAt(r.grid, first->beyond); // the centre of one
+        if (r.kept.levels[beyond.level]->isValueOn(toCoord(beyond.at)))
             throw Error(ErrorKind::input, first->text, opening,
                         first->area > 0 ? "close it, or give cells larger than it there; i2b regions lists all openings" : "give another place to keep out of");
         notes.push_back(fmt::format("{}, but cells do not: {}", first->text, opening));
