@@ -76,7 +76,6 @@ void ZipStar::loopOfZipped(std::int32_t face, std::vector<std::int32_t>& loop) c
 }
 
 void ZipStar::resolveLoops() {
-    constexpr Index chunk = 1024;
     zippedFaces_ = {};
     for (const std::int32_t c : zipped_)
         for (const std::int32_t f : cellFaces_[c]) {
@@ -86,18 +85,14 @@ void ZipStar::resolveLoops() {
         }
     zippedFaces_.close();
     const std::vector<std::int32_t>& faces = zippedFaces_.items();
-    std::vector<std::vector<std::int32_t>> parts((faces.size() + chunk - 1) / chunk);
     loopStart_.assign(faces.size() + 1, 0);
-    parallelChunks(faces.size(), chunk, [&](Index begin, Index end, Index part) {
+    loopPoints_ = collect<std::int32_t>(faces.size(), [&](Index i, const auto& put) {
         std::vector<std::int32_t> loop;
-        for (Index i = begin; i < end; ++i) {
-            loopOfZipped(faces[i], loop);
-            loopStart_[i] = loop.size();
-            parts[part].insert(parts[part].end(), loop.begin(), loop.end());
-        }
-    });
-    loopPoints_.clear(), loopPoints_.reserve(exclusiveScan(loopStart_));
-    for (const std::vector<std::int32_t>& part : parts) loopPoints_.insert(loopPoints_.end(), part.begin(), part.end());
+        loopOfZipped(faces[i], loop);
+        loopStart_[i] = loop.size();
+        for (const std::int32_t p : loop) put(p);
+    }, 1024);
+    exclusiveScan(loopStart_);
 }
 
 std::int32_t ZipStar::cellNow(std::int32_t cell) const {

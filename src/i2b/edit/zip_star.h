@@ -4,6 +4,7 @@
 #include "i2b/assemble/mesh_topology.h"
 #include "i2b/assemble/poly_mesh.h"
 #include "i2b/core/numbering.h"
+#include "i2b/core/raw_vector.h"
 #include "i2b/edit/changer.h"
 #include <cstdint>
 #include <map>
@@ -98,7 +99,7 @@ class ZipStar {
     std::vector<std::int32_t> zipped_;                                     // cells around zips, ascending
     Numbering zippedFaces_;                                                // theirs: what becomes of each is worked out once
     std::vector<std::size_t> loopStart_;                                   // per such face, and the end
-    std::vector<std::int32_t> loopPoints_;
+    RawVector<std::int32_t> loopPoints_;
 };
 
 } // namespace i2b
