@@ -62,8 +62,10 @@ std::vector<Side> flooded(const RegionCells& cells, const std::vector<Cell>& fro
 
 // Where the two floods meet.
 struct Meeting {
-    RegionCells::Face face; // towards what is beyond
-    double clearance, h;    // m, the lesser of the two cells'
+    RegionCells::Corners face; // towards what is beyond
+    double clearance, h;       // m, the lesser of the two cells'
+    Vec3 centre() const { return (face[0] + face[2]) / 2; }
+    Vec3 area() const { return cross(face[2] - face[0], face[3] - face[1]) / 2; }
 };
 
 std::vector<Meeting> meetings(const RegionCells& cells, const std::vector<Side>& sides) {
@@ -93,7 +95,7 @@ std::vector<std::vector<Meeting>> gathered(const std::vector<Meeting>& all) {
     Surface centres;
     for (const Meeting& m : all) {
         const auto n = static_cast<std::uint32_t>(centres.points.size());
-        centres.points.push_back(m.face.centre);
+        centres.points.push_back(m.centre());
         centres.triangles.push_back({n, n, n});
         centres.partOf.push_back(0);
     }
@@ -101,9 +103,9 @@ std::vector<std::vector<Meeting>> gathered(const std::vector<Meeting>& all) {
     UnionFind sets(all.size());
     parallelFor(all.size(), [&](std::size_t i) {
         const double reach = together * all[i].h;
-        const Vec3 &p = all[i].face.centre, r{reach, reach, reach};
+        const Vec3 p = all[i].centre(), r{reach, reach, reach};
         near.any({p - r, p + r}, [&](std::uint32_t other) {
-            if (norm(all[other].face.centre - p) <= reach) sets.join(static_cast<std::uint32_t>(i), other);
+            if (norm(centres.points[other] - p) <= reach) sets.join(static_cast<std::uint32_t>(i), other);
             return false;
         });
     }, 64);
@@ -168,14 +170,14 @@ Leak openingOf(const std::vector<Meeting>& faces, const SurfaceIndex& index) {
     Vec3 way;
     const Meeting* widest = &faces.front();
     for (const Meeting& m : faces) {
-        way += m.face.normal * m.face.area;
-        leak.box.add(m.face.centre);
-        leak.faces.push_back(m.face.corners);
+        way += m.area();
+        leak.box.add(m.centre());
+        leak.faces.push_back(m.face);
         if (m.clearance > widest->clearance) widest = &m;
     }
     leak.area = norm(way); // of steps that lean to and fro what is seen along the way
-    leak.place = widest->face.centre;
-    leak.width = 2 * Throat(norm2(way) > 0 ? normalized(way) : widest->face.normal, widest->h, leak.box, index).find(leak.place);
+    leak.place = widest->centre();
+    leak.width = 2 * Throat(normalized(norm2(way) > 0 ? way : widest->area()), widest->h, leak.box, index).find(leak.place);
     leak.part = index.surface().partOf[index.closest(leak.place).triangle];
     return leak;
 }

@@ -46,18 +46,17 @@ RegionCells::Cell RegionCells::widest() const {
 }
 
 // On each axis along it the face is as long as the finer cell.
-RegionCells::Face RegionCells::faceBetween(const Cell& c, const Cell& beside, const Way& way) const {
+RegionCells::Corners RegionCells::faceBetween(const Cell& c, const Cell& beside, const Way& way) const {
     const Lattice& lattice = grid_.lattice;
     const Box a = lattice.cellBox(grid_.levels[c.level].level, c.at), b = lattice.cellBox(grid_.levels[beside.level].level, beside.at);
     Vec3 lo, hi;
     for (int k = 0; k < 3; ++k) lo[k] = std::max(a.lo[k], b.lo[k]), hi[k] = std::min(a.hi[k], b.hi[k]);
     const int axis = static_cast<int>(way.axis), u = (axis + 1) % 3, v = (axis + 2) % 3;
     lo[axis] = hi[axis] = way.side ? a.hi[axis] : a.lo[axis];
-    Face face{(hi[u] - lo[u]) * (hi[v] - lo[v]), {}, (lo + hi) / 2, {lo, lo, hi, lo}};
-    face.normal[axis] = way.side ? 1 : -1;
-    face.corners[way.side ? 1 : 3][u] = hi[u];
-    face.corners[way.side ? 3 : 1][v] = hi[v];
-    return face;
+    Corners corners{lo, lo, hi, lo};
+    corners[way.side ? 1 : 3][u] = hi[u];
+    corners[way.side ? 3 : 1][v] = hi[v];
+    return corners;
 }
 
 } // namespace i2b

@@ -20,12 +20,7 @@ class RegionCells {
         std::size_t axis;
         int side; // 0 low, 1 high
     };
-    struct Face {
-        double area;                 // m^2
-        Vec3 normal;                 // unit, out of the cell
-        Vec3 centre;                 // m
-        std::array<Vec3, 4> corners; // m, around it, normal by the right-hand rule
-    };
+    using Corners = std::array<Vec3, 4>; // m, of a face, around it, the right-hand rule out of the cell
 
     // Keeps a reference to grid. Measures the clearances of all cells.
     RegionCells(const Regions& regions, std::int32_t region, const CellGrid& grid, const SurfaceIndex& index);
@@ -38,7 +33,7 @@ class RegionCells {
     double h(const Cell& c) const { return grid_.lattice.h(grid_.levels[c.level].level); }
     std::optional<Cell> cellAt(const Vec3& place) const;
     Cell widest() const; // of the largest clearance; of several the first
-    Face faceBetween(const Cell& c, const Cell& beside, const Way& way) const;
+    Corners faceBetween(const Cell& c, const Cell& beside, const Way& way) const;
 
     // Looks cells up; not to be shared between threads.
     class Reader {

@@ -132,7 +132,7 @@ void checkDomain(const DomainOptions& domain, Checker& check) {
         check.add("box", "the box has no volume", "give the lower corner first: x0 y0 z0 x1 y1 z1");
     if (domain.flow != Flow::automatic && !domain.seeds.empty())
         check.add("seed", "seeds and external or internal exclude each other", "give one of the two");
-    const auto checkPlaces = [&](const char* key, const char* what, const std::vector<Seed>& places) {
+    const auto checkSeeds = [&](const char* key, const char* what, const std::vector<Seed>& places) {
         for (const Seed& seed : places) {
             const std::string place = fmt::format("the {} at {}, {}, {}", what, seed.place.x, seed.place.y, seed.place.z);
             if (!isFinite(seed.place))
@@ -141,8 +141,8 @@ void checkDomain(const DomainOptions& domain, Checker& check) {
                 check.add(key, place + " lies outside the box", "move it or enlarge the box");
         }
     };
-    checkPlaces("seed", "seed", domain.seeds);
-    checkPlaces("keep-out", "place to keep out of", domain.keepOut);
+    checkSeeds("seed", "seed", domain.seeds);
+    checkSeeds("keep-out", "place to keep out of", domain.keepOut);
 }
 
 // The flow past the plate that y-plus is taken from.
