@@ -209,7 +209,7 @@ TEST_P(Fit, BlendLeavesNodesThatStayAtTheStart) {
         Positions x;
         std::vector<std::uint8_t> stays(s.band.walls, 0);
         for (std::size_t n = 0; n < s.band.walls; n += 50) stays[n] = 1;
-        const RawVector<double> alpha = blend(s.band, s.band.start, goal, x, stays);
+        const RawVector<double> alpha = blend(s.band, s.band.start, goal, x, {stays});
         EXPECT_EQ(inverted(s.band, x), 0u) << "seed " << seed;
         for (std::size_t n = 0; n < s.band.walls; ++n) {
             if (!stays[n]) continue;
@@ -304,7 +304,7 @@ TEST(FitFront, LeavesTheRoomThatLayersWant) {
         std::size_t n = 0;
         forSettings(1, [&](Setting& s, unsigned seed) {
             const FeatureGraph graph = buildFeatureGraph(s.painted.soup, FeatureOptions{});
-            fitFront(s.front, s.lattice, *s.painted.index, graph, FitOptions{}, Context(), wanted);
+            fitFront(s.front, s.lattice, *s.painted.index, graph, FitOptions{}, Context(), {wanted, {}});
             EXPECT_EQ(s.front.validate(), "") << "seed " << seed;
             for (std::size_t v = 0; v < s.front.front.size(); ++v, ++n) {
                 const Vec3 b = s.front.wall(v);

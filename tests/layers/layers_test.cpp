@@ -67,12 +67,12 @@ TEST(Layers, WantRoomForTheHighestRuleThatAPartHas) {
     all.parts.push_back({"a", 2, 0, 0, 0});
     all.parts.back().first = 5e-3;
     const std::vector<Part> both{{"a", "", 1}, {"b", "", 1}};
-    EXPECT_NEAR(roomWanted(plansOf(all, both)).metres, 15e-3, 1e-12);
+    EXPECT_NEAR(roomWanted(plansOf(all, both)).most.metres, 15e-3, 1e-12);
     all.parts.back().first = 0.2e-3;
-    EXPECT_NEAR(roomWanted(plansOf(all, both)).metres, 3e-3, 1e-12);
-    EXPECT_NEAR(roomWanted(plansOf(all, {{"a", "", 1}})).metres, 0.6e-3, 1e-12);
-    EXPECT_EQ(roomWanted(plansOf(all, both)).cells, 0);
-    EXPECT_EQ(roomWanted(plansOf(options(3, 1.2), both)).metres, 0); // they fill what there is
+    EXPECT_NEAR(roomWanted(plansOf(all, both)).most.metres, 3e-3, 1e-12);
+    EXPECT_NEAR(roomWanted(plansOf(all, {{"a", "", 1}})).most.metres, 0.6e-3, 1e-12);
+    EXPECT_EQ(roomWanted(plansOf(all, both)).most.cells, 0);
+    EXPECT_EQ(roomWanted(plansOf(options(3, 1.2), both)).most.metres, 0); // they fill what there is
 }
 
 TEST(Layers, GrowByTheRatio) {

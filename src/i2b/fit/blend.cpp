@@ -10,7 +10,7 @@ namespace {
 
 constexpr double badEnergy = 4;     // phi above which a corner's nodes step back
 constexpr double stepBack = 0.35;   // of the way
-constexpr double slope = 0.34;      // largest difference of alpha between neighbours: keeps the rim of a patch valid
+constexpr double asGood = 0.7;      // of what it was at the start, by the scaled Jacobian: a corner that was bad before is no worse
 constexpr int gentleRounds = 30;    // after these only inverted corners count, and then their nodes go back whole
 
 // How far each movable node has come, and what follows from changes that nobody has looked at yet.
@@ -22,6 +22,7 @@ struct Progress {
     std::vector<std::uint8_t> moved;   // when they were placed last
     std::vector<std::uint8_t> marked;  // of bad corners, or beside lowered ones; those who ask take it off
     std::vector<std::uint8_t> uneven;  // per fan: a node of it was lowered since they agreed
+    const Positions* poorFrom = nullptr; // the start, where corners may have been bad
 
     explicit Progress(const Band& b)
         : band(b), alpha(filled(b.movable, 1.0)), untold(b.movable, 0), unplaced(b.movable, 1), moved(b.movable, 0), marked(b.movable, 0), uneven(b.fronts, 0) {}
@@ -51,8 +52,13 @@ TraceAndDet lookAt(const Corner& c, const Positions& x) {
 // many have, all corners in turn, else those of the nodes that have, each at the first such node.
 void markBadCorners(const Band& band, const Positions& x, double limit, Progress& progress) {
     const auto isMoved = [&](std::int32_t m) { return static_cast<std::size_t>(m) < band.movable && progress.moved[static_cast<std::size_t>(m)]; };
+    const auto wasAsPoor = [&](const Corner& corner) {
+        if (!progress.poorFrom) return false;
+        const TraceAndDet before = lookAt(corner, *progress.poorFrom);
+        return energyExceeds(before.trace, before.det, limit) && scaledJacobian(corner, x) >= asGood * scaledJacobian(corner, *progress.poorFrom);
+    };
     const auto judge = [&](const Corner& corner) {
-        if (const TraceAndDet c = lookAt(corner, x); !energyExceeds(c.trace, c.det, limit)) return;
+        if (const TraceAndDet c = lookAt(corner, x); !energyExceeds(c.trace, c.det, limit) || (c.det > 0 && wasAsPoor(corner))) return;
         for (std::int32_t m : corner.node) progress.mark(m);
     };
     const std::size_t moved = orderedReduce(band.movable, std::size_t(0), [&](std::size_t begin, std::size_t end) {
@@ -90,7 +96,7 @@ bool stepBackBad(const Band& band, const Positions& x, double limit, double step
 
 // Lowers alpha until neighbours differ by no more than the slope, and the nodes of one fan agree. Only where a neighbour
 // was lowered there is anything to do.
-void spread(const Band& band, Progress& progress) {
+void spread(const Band& band, double slope, Progress& progress) {
     RawVector<double> bound(band.movable);
     for (int round = 0; round < 4; ++round) {
         std::uint8_t any = 0;
@@ -163,10 +169,11 @@ std::vector<std::uint8_t> nodesOfPoorCorners(const Band& band, const Positions& 
 }
 
 RawVector<double> blend(const Band& band, const Positions& start, const Positions& goal, Positions& x,
-                          const std::vector<std::uint8_t>& stays) {
+                          const BlendOptions& options) {
     Progress progress(band);
-    forFlagged(stays, [&](std::size_t n) { progress.lower(n, 0); });
-    spread(band, progress);
+    if (options.maybePoor) progress.poorFrom = &start;
+    forFlagged(options.stays, [&](std::size_t n) { progress.lower(n, 0); });
+    spread(band, options.slope, progress);
     copyTo(x, start);
     place(start, goal, progress, x);
     for (int round = 0;; ++round) {
@@ -179,7 +186,7 @@ RawVector<double> blend(const Band& band, const Positions& start, const Position
             round = gentleRounds - 1;
             continue;
         }
-        if (gentle) spread(band, progress);
+        if (gentle) spread(band, options.slope, progress);
         place(start, goal, progress, x);
     }
     return progress.alpha;

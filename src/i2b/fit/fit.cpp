@@ -1,11 +1,12 @@
 #include "i2b/fit/fit.h"
-#include "i2b/core/collect.h"
 #include "i2b/core/parallel.h"
 #include "i2b/fit/bends.h"
 #include "i2b/fit/corner.h"
+#include "i2b/fit/deepen.h"
 #include "i2b/fit/folds.h"
 #include "i2b/fit/insert.h"
 #include "i2b/fit/off_wall.h"
+#include "i2b/fit/store.h"
 #include "i2b/fit/wall_views.h"
 #include <algorithm>
 #include <numeric>
@@ -94,25 +95,6 @@ bool finish(WallViews& views, const FeatureIndex& features, const std::vector<Sn
     return true;
 }
 
-void store(const Band& band, const Positions& x, Front& front) {
-    parallelFor(band.walls, [&](std::size_t v) {
-        front.mesh.set_point(FrontMesh::VertexHandle(static_cast<int>(v)), {x[v].x, x[v].y, x[v].z});
-        front.front[v] = x[static_cast<std::size_t>(band.frontNode[v])];
-    }, 2048);
-    const std::size_t core = band.walls + band.fronts;
-    const RawVector<std::uint32_t> moved = collect<std::uint32_t>(band.movable - core, [&](std::size_t i, const auto& put) {
-        if (!(x[core + i] == band.start[core + i])) put(static_cast<std::uint32_t>(core + i));
-    }, 4096);
-    front.movedPoints.resize(moved.size()), front.movedTo.resize(moved.size()), front.movedSize.resize(moved.size()), front.movedOutside.resize(moved.size());
-    parallelFor(moved.size(), [&](std::size_t i) {
-        const std::size_t n = moved[i];
-        front.movedPoints[i] = band.corePoint[n - band.walls];
-        front.movedTo[i] = x[n];
-        front.movedSize[i] = static_cast<float>(band.h[n]);
-        front.movedOutside[i] = band.outside[n];
-    }, 4096);
-}
-
 std::vector<Front::Hanging> hangingPoints(const Band& band) {
     std::vector<Front::Hanging> hanging;
     const auto pointOf = [&](std::int32_t node) { return band.corePoint[static_cast<std::size_t>(node) - band.walls]; };
@@ -172,7 +154,7 @@ Positions projected(Band& band, const SurfaceIndex& index, const FeatureIndex& f
     const Positions goal = goalPositions(band, index, start, sweeps);
     context.checkCancelled();
     Positions x;
-    const RawVector<double> alpha = blend(band, start, goal, x, nodesAtLines(band, features, goal));
+    const RawVector<double> alpha = blend(band, start, goal, x, {nodesAtLines(band, features, goal)});
     for (std::size_t v = 0; v < band.walls; ++v) summary.blended += alpha[v] == 1;
     return x;
 }
@@ -180,11 +162,11 @@ Positions projected(Band& band, const SurfaceIndex& index, const FeatureIndex& f
 } // namespace
 
 FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& index, const FeatureGraph& graph,
-                    const FitOptions& options, const Context& context, const WantedRoom& room) {
+                    const FitOptions& options, const Context& context, const RoomOfWalls& room) {
     FitSummary summary;
     EnergyOptions energy;
     energy.budget = Budget(options.seconds);
-    Band band = buildBand(mesh, front, rings, room);
+    Band band = buildBand(mesh, front, rings, room.most);
     summary.wallNodes = band.walls;
     front.hanging = hangingPoints(band);
     context.checkCancelled();
@@ -229,6 +211,8 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     for (const Snap& s : snaps) summary.snapped += s.kind != SnapKind::none;
     for (std::uint8_t a : active) summary.active += a;
     store(band, x, front);
+    context.checkCancelled();
+    if (!energy.budget.isOver() && deepen(front, mesh, index, room)) takeStored(band, front, x);
     if (options.features) seekOnce(front, views, features, x, snaps, summary);
     if (options.features) summary.split += cutAcrossBends(front, index);
     summary.snaps = std::move(snaps);

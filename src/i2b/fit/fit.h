@@ -38,7 +38,7 @@ struct FitSummary {
 // Moves the front's vertices (front and wall positions, movedPoints). Every corner stays positive. Once options.seconds
 // are over no further sweep of the energy begins and no further features are looked for; the exact snap is always done.
 FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& index, const FeatureGraph& features,
-                    const FitOptions& options, const Context& context, const WantedRoom& room = {});
+                    const FitOptions& options, const Context& context, const RoomOfWalls& room = {});
 
 // --- steps, for tests and benchmarks -------------------------------------------------------------------------------
 
@@ -63,10 +63,15 @@ Vec3 seenFront(const SurfaceIndex& index, const Band& band, std::size_t wallNode
 // Direct positions: smoothed front, projected wall, relaxed core (Jacobi; positions per node).
 Positions goalPositions(const Band& band, const SurfaceIndex& index, const Positions& start, int sweeps);
 
+struct BlendOptions {
+    std::vector<std::uint8_t> stays; // per wall node (or empty), not 0: alpha is 0
+    double slope = 0.34;             // largest difference of alpha between neighbours: keeps the rim of a patch valid
+    bool maybePoor = false;          // corners that are bad at the start may stay so
+};
 // x = start + alpha (goal - start) with the largest alpha per node, bounded in slope, that leaves every corner good.
-// Gives alpha per movable node; x is filled. stays: per wall node (or empty), not 0: alpha is 0.
+// Gives alpha per movable node; x is filled.
 RawVector<double> blend(const Band& band, const Positions& start, const Positions& goal, Positions& x,
-                          const std::vector<std::uint8_t>& stays = {});
+                          const BlendOptions& options = {});
 
 // Corner quality: phi = 0.75 |J|^2 / (3 D^(2/3)) + 0.125 (D + 1/D), infinite where D <= 0; 1 for the ideal corner.
 double cornerEnergy(const Corner& corner, const Positions& x);

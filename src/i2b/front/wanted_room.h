@@ -1,6 +1,7 @@
 // How far from the wall the front is to stand, for the layers between them.
 #pragma once
 #include <algorithm>
+#include <vector>
 
 namespace i2b {
 
@@ -10,6 +11,11 @@ struct WantedRoom {
     double metres = 0;
     double cells = 0;   // the same in edges of the cell at the wall; the larger one counts
     double inCells(double h) const { return std::max(cells, metres / h); } // h: m, that edge
+};
+
+struct RoomOfWalls {
+    WantedRoom most;                // of all walls
+    std::vector<WantedRoom> ofPart; // per part of the surface; empty: the same on all
 };
 
 } // namespace i2b

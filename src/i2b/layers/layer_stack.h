@@ -27,7 +27,7 @@ struct WallPlans {
 };
 // Throws Error(usage) where a name is no regular expression or there are more than 65535 rules.
 WallPlans plansOf(const LayerOptions& options, const std::vector<Part>& parts);
-WantedRoom roomWanted(const WallPlans& plans); // by the plan that wants most, of those that a part has
+RoomOfWalls roomWanted(const WallPlans& plans); // most: of the plans that a part has
 
 // Points of a vertex run from the front, which is a point of the kept cells and not counted, to the wall; cells of a face
 // from the front to the wall too.

@@ -96,13 +96,16 @@ WallPlans plansOf(const LayerOptions& options, const std::vector<Part>& parts) {
     return out;
 }
 
-WantedRoom roomWanted(const WallPlans& plans) {
-    WantedRoom room;
-    for (std::size_t p = 0; p < plans.plans.size(); ++p) {
-        if (!plans.ofPart.empty() && std::find(plans.ofPart.begin(), plans.ofPart.end(), p) == plans.ofPart.end()) continue;
-        const LayerPlan& plan = plans.plans[p];
-        double& most = plan.relative ? room.cells : room.metres;
-        most = std::max(most, plan.room());
+RoomOfWalls roomWanted(const WallPlans& plans) {
+    const auto roomOf = [](const LayerPlan& plan) { return plan.relative ? WantedRoom{0, plan.room()} : WantedRoom{plan.room(), 0}; };
+    RoomOfWalls room;
+    if (plans.ofPart.empty()) {
+        room.most = roomOf(plans.plans.front());
+        return room;
+    }
+    for (const std::uint16_t p : plans.ofPart) {
+        const WantedRoom wanted = room.ofPart.emplace_back(roomOf(plans.plans[p]));
+        room.most = {std::max(room.most.metres, wanted.metres), std::max(room.most.cells, wanted.cells)};
     }
     return room;
 }
