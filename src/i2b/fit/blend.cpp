@@ -52,13 +52,9 @@ TraceAndDet lookAt(const Corner& c, const Positions& x) {
 // many have, all corners in turn, else those of the nodes that have, each at the first such node.
 void markBadCorners(const Band& band, const Positions& x, double limit, Progress& progress) {
     const auto isMoved = [&](std::int32_t m) { return static_cast<std::size_t>(m) < band.movable && progress.moved[static_cast<std::size_t>(m)]; };
-    const auto wasAsPoor = [&](const Corner& corner) {
-        if (!progress.poorFrom) return false;
-        const TraceAndDet before = lookAt(corner, *progress.poorFrom);
-        return energyExceeds(before.trace, before.det, limit) && scaledJacobian(corner, x) >= asGood * scaledJacobian(corner, *progress.poorFrom);
-    };
     const auto judge = [&](const Corner& corner) {
-        if (const TraceAndDet c = lookAt(corner, x); !energyExceeds(c.trace, c.det, limit) || (c.det > 0 && wasAsPoor(corner))) return;
+        if (const TraceAndDet c = lookAt(corner, x); !energyExceeds(c.trace, c.det, limit)) return;
+        if (progress.poorFrom && !isBad(corner, x, *progress.poorFrom, limit)) return;
         for (std::int32_t m : corner.node) progress.mark(m);
     };
     const std::size_t moved = orderedReduce(band.movable, std::size_t(0), [&](std::size_t begin, std::size_t end) {
@@ -148,6 +144,13 @@ double scaledJacobian(const Corner& c, const Positions& x) {
     const Vec3 e1 = x[static_cast<std::size_t>(c.node[1])] - x0, e2 = x[static_cast<std::size_t>(c.node[2])] - x0, e3 = x[static_cast<std::size_t>(c.node[3])] - x0;
     const double l = norm(e1) * norm(e2) * norm(e3);
     return l > 0 ? dot(cross(e1, e2), e3) / l : -1;
+}
+
+bool isBad(const Corner& c, const Positions& x, const Positions& before, double limit) {
+    const TraceAndDet now = lookAt(c, x);
+    if (!energyExceeds(now.trace, now.det, limit)) return false;
+    const TraceAndDet was = lookAt(c, before);
+    return !(now.det > 0) || !energyExceeds(was.trace, was.det, limit) || scaledJacobian(c, x) < asGood * scaledJacobian(c, before);
 }
 
 double worstCorner(const Band& band, std::size_t node, const Positions& x) {

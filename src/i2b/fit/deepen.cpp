@@ -22,10 +22,9 @@ constexpr double slope = 0.4;       // by which depths of neighbours may differ,
 constexpr int smoothings = 2;       // of depths: the front keeps its steps, in which cells have their corners
 constexpr int rounds = 8;           // of less depth at bad corners
 constexpr double badCore = 2.5, badPrism = 4; // phi
-constexpr double asGood = 0.7;      // of what it was, by the scaled Jacobian: a corner that was bad before is no worse
 constexpr double less = 0.7;        // of its depth is left to a front node at bad corners,
 constexpr double leastDepth = 0.05; // of h; and of less than this nothing
-constexpr double usualSlope = 0.34, steepest = 0.5; // of the shares of their ways that neighbours go: h an edge at most
+constexpr double steepest = 0.5;    // h an edge, that the ways which neighbours go differ by
 const double pi = std::acos(-1.0);
 
 // Of the front at each vertex into the core, unit; none where its faces are opposed.
@@ -61,7 +60,7 @@ double wayToSide(const Box& domain, const Vec3& from, const Vec3& way) {
 }
 
 // In edges h (m) of the cell at a place on the wall: of the part there.
-double roomAt(const RoomOfWalls& room, const SurfaceIndex& index, const Vec3& wall, double h) {
+double wantedAt(const RoomOfWalls& room, const SurfaceIndex& index, const Vec3& wall, double h) {
     if (room.ofPart.empty()) return room.most.inCells(h);
     const ClosestPoint c = index.closest(wall, h);
     return c ? room.ofPart[Index(index.surface().partOf[Index(c.triangle)])].inCells(h) : 0;
@@ -73,7 +72,7 @@ std::vector<double> depthsWanted(const Front& front, const std::vector<Vec3>& no
     parallelFor(depths.size(), [&](Index v) {
         const double h = front.h[v], have = norm(front.front[v] - front.wall(v));
         if (room.most.inCells(h) < usual || normals[v] == Vec3{}) return;
-        const double wanted = std::min(roomAt(room, index, front.wall(v), h), most) * h;
+        const double wanted = std::min(wantedAt(room, index, front.wall(v), h), most) * h;
         if (wanted < usual * h || !(wanted > have)) return;
         const Vec3& from = front.front[v];
         const double reach = wanted / ofPassage;
@@ -90,7 +89,7 @@ class Deepening {
   public:
     // Keeps references. from: of all nodes; normals, depths: per wall node.
     Deepening(const Band& band, const Positions& from, int rings, const std::vector<Vec3>& normals, const std::vector<double>& depths)
-        : band_(band), from_(from), rings_(rings), normal_(band.fronts), depth_(band.fronts, 0.0), move_(band.nodes()) {
+        : band_(band), from_(from), rings_(rings), normal_(band.fronts), depth_(filled(band.fronts, 0.0)), move_(band.nodes()) {
         parallelFor(band.fronts, [&](Index i) {
             if (band.fansOf[i].size() != 1) return; // cells on both sides of it
             const auto v = Index(band.fansOf[i].front());
@@ -116,8 +115,7 @@ class Deepening {
         parallelFor(band_.corners.items(), [&](Index i) {
             const double limit = i < band_.corners.cells.size() ? badCore : badPrism;
             band_.corners.ofItem(i, [&](const Corner& c) {
-                if (!(cornerEnergy(c, places) > limit)) return;
-                if (cornerEnergy(c, from_) > limit && scaledJacobian(c, places) >= asGood * scaledJacobian(c, from_)) return;
+                if (!isBad(c, places, from_, limit)) return;
                 for (const std::int32_t n : c.node)
                     if (leader_[Index(n)] >= 0) setFlag(bad[Index(leader_[Index(n)])]);
             });
@@ -164,16 +162,18 @@ class Deepening {
         }
     }
     void boundSlopes() {
+        RawVector<double> old;
         for (int r = 0; r < 2 * rings_; ++r) {
-            const std::vector<double> old = depth_;
+            copyTo(old, depth_);
             parallelFor(band_.fronts, [&](Index i) {
                 around(i, [&](Index j) { depth_[i] = std::min(depth_[i], old[j] + slope * norm(at(i) - at(j))); });
             });
         }
     }
     void smooth() {
+        RawVector<double> old;
         for (int r = 0; r < smoothings; ++r) {
-            const std::vector<double> old = depth_;
+            copyTo(old, depth_);
             parallelFor(band_.fronts, [&](Index i) {
                 double sum = 2 * old[i], weight = 2;
                 around(i, [&](Index j) { sum += old[j], ++weight; });
@@ -183,18 +183,19 @@ class Deepening {
     }
     // Each front node goes by its depth along its normal, and across it with those around.
     void moveFront() {
+        Positions moves = filled(band_.fronts, Vec3{}), old;
         for (int r = 0; r < 2 * rings_; ++r) {
-            Positions old;
-            copyTo(old, move_);
+            copyTo(old, moves);
             parallelFor(band_.fronts, [&](Index i) {
                 if (normal_[i] == Vec3{}) return;
                 Vec3 sum;
                 double weight = 0;
-                around(i, [&](Index j) { sum += old[band_.walls + j], ++weight; });
+                around(i, [&](Index j) { sum += old[j], ++weight; });
                 const Vec3 mean = weight > 0 ? sum / weight : sum, move = mean + normal_[i] * (depth_[i] - dot(mean, normal_[i]));
-                move_[band_.walls + i] = withinSides(move, band_.outside[band_.walls + i]);
+                moves[i] = withinSides(move, band_.outside[band_.walls + i]);
             });
         }
+        parallelFor(band_.fronts, [&](Index i) { move_[band_.walls + i] = moves[i]; }, 4096);
     }
     // The core behind goes with it, ever less: the ways of all nodes from where the lattice has them are harmonic. Chebyshev's
     // semi-iteration of Jacobi's sweeps (Golub and Varga 1961), by the spectral radius of a chain of as many nodes as there are rings.
@@ -216,21 +217,14 @@ class Deepening {
             });
             before.swap(move_), move_.swap(now); // now: of two sweeps ago, and overwritten
         }
-        copyTo(now, move_);
-        parallelFor(band_.movable - core, [&](Index k) { // what hangs on a coarse edge or face stays on it
-            const std::span<const std::int32_t> parents = band_.parents[core + k];
-            if (parents.empty()) return;
-            Vec3 sum;
-            for (const std::int32_t p : parents) sum += now[Index(p)];
-            move_[core + k] = sum / static_cast<double>(parents.size());
-        });
+        settleHanging(band_, core, move_); // of the lattice's places it is true, so of the ways from them
     }
 
     const Band& band_;
     const Positions& from_;
     int rings_;
     std::vector<Vec3> normal_;       // per front node
-    std::vector<double> depth_;      // the same, m
+    RawVector<double> depth_;        // the same, m
     Positions move_;                 // m, per node: first from `from`, then from the lattice
     RawVector<std::int32_t> leader_; // the same: front node, less walls; or -1
 };
@@ -238,11 +232,14 @@ class Deepening {
 } // namespace
 
 bool deepen(Front& front, const LatticeMesh& mesh, const SurfaceIndex& index, const RoomOfWalls& room) {
-    if (room.most.inCells(1) == 0) return false;
+    if (!wantsDepth(room)) return false;
     const std::vector<Vec3> normals = inwards(front);
     const std::vector<double> depths = depthsWanted(front, normals, index, mesh.lattice().domain(), room);
-    double deepest = 0; // in h
-    for (Index v = 0; v < depths.size(); ++v) deepest = std::max(deepest, depths[v] / front.h[v]);
+    const double deepest = orderedReduce(depths.size(), 0.0, [&](Index begin, Index end) { // in h
+        double most = 0;
+        for (Index v = begin; v < end; ++v) most = std::max(most, depths[v] / front.h[v]);
+        return most;
+    }, [](double a, double b) { return std::max(a, b); });
     if (deepest == 0) return false;
     const int rings = std::clamp(static_cast<int>(std::ceil(deepest / squeeze)), leastRings, mostRings);
     const Band band = buildBand(mesh, front, rings, room.most);
@@ -251,7 +248,9 @@ bool deepen(Front& front, const LatticeMesh& mesh, const SurfaceIndex& index, co
     Deepening deepening(band, from, rings, normals, depths);
     Positions to = deepening.places();
     for (int round = 1; round < rounds && deepening.goLess(to); ++round) to = deepening.places();
-    blend(band, from, to, x, {.stays = {}, .slope = std::min(usualSlope, steepest / deepest), .maybePoor = true});
+    BlendOptions options;
+    options.slope = std::min(options.slope, steepest / deepest), options.maybePoor = true;
+    blend(band, from, to, x, options);
     store(band, x, front);
     return true;
 }

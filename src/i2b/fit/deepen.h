@@ -9,6 +9,8 @@
 
 namespace i2b {
 
+// Do layers ask for any height at all?
+inline bool wantsDepth(const RoomOfWalls& room) { return room.most.inCells(1) > 0; }
 // Moves front positions and core points; wall positions stay. Before vertices are inserted. Gives whether any moved.
 bool deepen(Front& front, const LatticeMesh& mesh, const SurfaceIndex& index, const RoomOfWalls& room);
 

@@ -212,7 +212,8 @@ FitSummary fitFront(Front& front, const LatticeMesh& mesh, const SurfaceIndex& i
     for (std::uint8_t a : active) summary.active += a;
     store(band, x, front);
     context.checkCancelled();
-    if (!energy.budget.isOver() && deepen(front, mesh, index, room)) takeStored(band, front, x);
+    if (energy.budget.isOver()) summary.cutShort = summary.cutShort || wantsDepth(room);
+    else if (deepen(front, mesh, index, room)) takeStored(band, front, x);
     if (options.features) seekOnce(front, views, features, x, snaps, summary);
     if (options.features) summary.split += cutAcrossBends(front, index);
     summary.snaps = std::move(snaps);

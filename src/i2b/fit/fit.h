@@ -63,6 +63,9 @@ Vec3 seenFront(const SurfaceIndex& index, const Band& band, std::size_t wallNode
 // Direct positions: smoothed front, projected wall, relaxed core (Jacobi; positions per node).
 Positions goalPositions(const Band& band, const SurfaceIndex& index, const Positions& start, int sweeps);
 
+// Of core and front points from `first` on those that hang on coarse edges or faces go to the middle of these.
+void settleHanging(const Band& band, std::size_t first, Positions& x);
+
 struct BlendOptions {
     std::vector<std::uint8_t> stays; // per wall node (or empty), not 0: alpha is 0
     double slope = 0.34;             // largest difference of alpha between neighbours: keeps the rim of a patch valid
@@ -76,6 +79,8 @@ RawVector<double> blend(const Band& band, const Positions& start, const Position
 // Corner quality: phi = 0.75 |J|^2 / (3 D^(2/3)) + 0.125 (D + 1/D), infinite where D <= 0; 1 for the ideal corner.
 double cornerEnergy(const Corner& corner, const Positions& x);
 double scaledJacobian(const Corner& corner, const Positions& x);
+// Is phi above the limit, and was it not before, or was the corner better then by far?
+bool isBad(const Corner& corner, const Positions& x, const Positions& before, double limit);
 // The least of a node's corners, at most 1.
 double worstCorner(const Band& band, std::size_t node, const Positions& x);
 // Marks, per movable node, those of corners with a phi above the limit.

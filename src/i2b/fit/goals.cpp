@@ -116,11 +116,17 @@ void relaxVolume(const Band& band, const SurfaceIndex& index, const Positions& s
         const Vec3 moved = old[n] + withinSides(to - old[n], band.outside[n]);
         x[n] = isFront(band, n) ? stoppedByGeometry(index, start[n], moved) : moved;
     });
-    // Nodes that hang on a coarse edge or face stay on it; parents never hang themselves on the same level.
-    copyTo(copy, x);
-    const Positions& relaxed = copy;
-    parallelFor(band.movable - band.walls, [&](std::size_t i) {
-        const std::size_t n = band.walls + i;
+    settleHanging(band, band.walls, x);
+}
+
+} // namespace
+
+// Parents never hang themselves on the same level.
+void settleHanging(const Band& band, std::size_t first, Positions& x) {
+    Positions relaxed;
+    copyTo(relaxed, x);
+    parallelFor(band.movable - first, [&](std::size_t i) {
+        const std::size_t n = first + i;
         const std::span<const std::int32_t> parents = band.parents[n];
         if (parents.empty()) return;
         Vec3 sum;
@@ -128,8 +134,6 @@ void relaxVolume(const Band& band, const SurfaceIndex& index, const Positions& s
         x[n] = sum / static_cast<double>(parents.size());
     });
 }
-
-} // namespace
 
 WallTarget wallTarget(const SurfaceIndex& index, const Band& band, std::size_t wall, const Vec3& front, const Vec3& b) {
     return targetSeen(index, seenFront(index, band, wall, front), b, band.h[wall], band.reach[wall], band.outside[wall]);
