@@ -41,7 +41,7 @@ class Dice { // the standard's distributions differ between libraries
     std::mt19937 random_;
 };
 
-// Heights from what fills the room down to a hundred thousandth of a cell.
+// Heights from several cells down to a hundred thousandth of one.
 LayerOptions layersOf(Dice& dice, double h, const std::vector<Part>& parts) {
     LayerOptions o;
     o.count = dice.chance(0.04) ? dice.whole(13, 25) : dice.whole(1, 12);
@@ -49,12 +49,13 @@ LayerOptions layersOf(Dice& dice, double h, const std::vector<Part>& parts) {
     if (dice.chance(0.2)) o.unit = LayerUnit::cell;
     const double unit = o.unit == LayerUnit::cell ? 1 : h;
     if (dice.chance(0.7)) o.first = unit * std::pow(10, dice.real(-5, -0.5));
-    if (o.first == 0 && dice.chance(0.5)) o.thickness = unit * dice.real(0.02, 1.5);
+    if (o.first == 0 && dice.chance(0.5)) o.thickness = unit * (dice.chance(0.5) ? dice.real(0.02, 1.5) : dice.real(1.5, 5));
     for (const Part& part : parts) {
         if (!dice.chance(0.3)) continue;
         PartLayers rule;
         rule.part = part.name, rule.count = dice.whole(0, 8);
         if (dice.chance(0.5)) rule.first = unit * std::pow(10, dice.real(-4, -1));
+        else if (rule.count > 0 && dice.chance(0.3)) rule.thickness = unit * dice.real(0.1, 4);
         o.parts.push_back(rule);
     }
     return o;
@@ -63,7 +64,7 @@ LayerOptions layersOf(Dice& dice, double h, const std::vector<Part>& parts) {
 std::string asked(const LayerOptions& o) {
     std::string text = fmt::format("{} layers, first {:g}, growth {:g}, thickness {:g}{}", o.count, o.first, o.growth, o.thickness,
                                    o.unit == LayerUnit::cell ? " cells" : "");
-    for (const PartLayers& p : o.parts) text += fmt::format("; {}={},first={:g}", p.part, p.count, p.first);
+    for (const PartLayers& p : o.parts) text += fmt::format("; {}={},first={:g},thickness={:g}", p.part, p.count, p.first, p.thickness);
     return text;
 }
 
