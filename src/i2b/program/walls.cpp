@@ -9,7 +9,8 @@ namespace i2b {
 namespace {
 
 constexpr int mostCuts = 4;   // rounds of cutting walls under cells that cannot be made valid
-constexpr std::size_t mostFolded = 2000; // thin cells: where more are, their height asks for it
+constexpr std::size_t mostFolded = 2000; // thin cells, or so many
+constexpr double mostFoldedShare = 0.01; // of all layer cells: where more are, their height asks for it
 constexpr int mostTries = 3;  // further ones, without cuts of the fit around such cells
 constexpr int wrongRings = 3; // of cells around them
 
@@ -37,7 +38,8 @@ RepairSummary assembleAndRepair(const WallInput& in, Walls& walls, PolyMesh& mes
             };
             const auto core = static_cast<std::int32_t>(in.lattice.cellCount());
             RepairSummary r = repaired(false);
-            const auto isFolded = [&] { return !r.foldedCells.empty() && r.foldedCells.size() <= mostFolded; };
+            const std::size_t most = std::max(mostFolded, static_cast<std::size_t>(mostFoldedShare * static_cast<double>(layers.cells())));
+            const auto isFolded = [&] { return !r.foldedCells.empty() && r.foldedCells.size() <= most; };
             for (int round = 0; (r.remaining > 0 || isFolded()) && round < mostCuts; ++round) {
                 const bool wasWrong = r.remaining > 0;
                 const std::vector<std::uint8_t> moved = std::move(r.movedWalls);

@@ -266,6 +266,15 @@ TetLack CellStar::judgeTets(double most) {
     return out;
 }
 
+bool CellStar::mayDivide(const TetLack& before) {
+    ++turn_;
+    TetLack out;
+    return std::ranges::all_of(tetOrder_, [&](std::uint32_t i) {
+        addTets(out, tetShareOf(i));
+        return before.undivided ? out.sum <= before.sum : !out.undivided;
+    });
+}
+
 double CellStar::tetSumNearby() {
     ++turn_;
     TetLack out;

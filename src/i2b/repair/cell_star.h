@@ -49,6 +49,8 @@ class CellStar {
     bool mayStand(const Badness& before);
     // The same of tetrahedra, which are in no other figure. Looks no further where the sum comes to `most`.
     TetLack judgeTets(double most = std::numeric_limits<double>::infinity());
+    // After it: does every face divide there, or lack all of them together no more than before where some did not?
+    bool mayDivide(const TetLack& before);
     // After judge(), and after the first judgeTets(), at a place close by: of what had a part in their sum alone, as slopes take it.
     double sumNearby();
     double tetSumNearby();

@@ -213,6 +213,13 @@ std::int64_t Optimiser::mend(int sweeps, bool mayLeave) {
     return moves;
 }
 
+std::int64_t Optimiser::mendKeepingTets(int sweeps) {
+    keepsTets_ = true;
+    const std::int64_t moves = mend(sweeps);
+    keepsTets_ = false;
+    return moves;
+}
+
 void Optimiser::mendAt(const std::vector<std::int32_t>& cells, int sweeps) {
     allMayLeave(false);
     RestingNodes resting;

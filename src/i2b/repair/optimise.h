@@ -32,6 +32,8 @@ class Optimiser {
     // The nodes of poor and wrong cells, until nothing gets better. Gives how many moves were made. mayLeave: wall nodes
     // need not stay on the geometry.
     std::int64_t mend(int sweeps, bool mayLeave = false);
+    // The same, where no face that divides into tetrahedra may cease to.
+    std::int64_t mendKeepingTets(int sweeps);
     // The same of those among these cells (ascending).
     void mendAt(const std::vector<std::int32_t>& cells, int sweeps);
     // The nodes of these thin cells, whose determinants count then, which a limit for all cells has them keep to.
@@ -119,6 +121,7 @@ class Optimiser {
     LayerStack& stack_;
     std::unordered_set<std::int32_t> leavers_; // wall vertices that need not stay on the geometry;
     bool allLeave_ = false;                    // nor need any other
+    bool keepsTets_ = false;                   // do moves for other limits leave faces that divide as they are?
     bool isLast_ = false;                      // are few faces left, which are worth any effort?
     bool thin_;           // are the layers thin?
     int layers_;          // cells of the highest stack of thin layers, which share their faults; 1 where there are none

@@ -61,19 +61,24 @@ bool Optimiser::mendNode(const Task& task, Worker& worker) {
     const double h = nodes_.h(task.node);
     const Vec3 down = worker.descent(before.sum, probe * h, outside, [&](const Vec3& to) { return worker.sumBeside(to); });
     const Hold hold = holdAt(task.node, from);
-    Vec3 best = from;
-    Badness least = before;
+    std::vector<std::pair<Vec3, double>> found; // ever better places, and their sums
     const auto tryStep = [&](const Vec3& step) {
         const Vec3 to = onWall(hold, task.node, from, from + step);
-        const Badness b = worker.at(to, before, least.sum);
-        if (b.worst > before.worst || (b.invalid && !before.invalid) || !(b.sum < least.sum) || !isFree(task.node, to)) return;
-        least = b, best = to;
+        const double least = found.empty() ? before.sum : found.back().second;
+        const Badness b = worker.at(to, before, least);
+        if (b.worst > before.worst || (b.invalid && !before.invalid) || !(b.sum < least) || !isFree(task.node, to)) return;
+        found.emplace_back(to, b.sum);
     };
     const Vec3 toMiddle = withinSides(middle - from, outside);
     for (const double length : stepLengths) tryStep(down * (length * h));
-    if (best == from) // no way down
+    if (found.empty()) // no way down
         for (const double share : towardsMiddle) tryStep(toMiddle * share);
-    if (!(least.sum < before.sum * (1 - leastGain))) best = from;
+    const TetLack tets = keepsTets_ && !found.empty() ? worker.tetsAt(from) : TetLack{};
+    const auto helps = [&](const std::pair<Vec3, double>& place) {
+        return place.second < before.sum * (1 - leastGain) && (!keepsTets_ || worker.mayDivideAt(place.first, tets));
+    };
+    while (!found.empty() && !helps(found.back())) found.pop_back();
+    const Vec3 best = found.empty() ? from : found.back().first;
     worker.end(best);
     return !(best == from);
 }

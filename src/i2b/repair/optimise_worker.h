@@ -64,6 +64,10 @@ struct Optimiser::Worker {
         put(to);
         return star.judgeTets(most);
     }
+    bool mayDivideAt(const Vec3& to, const TetLack& before) {
+        put(to);
+        return star.mayDivide(before);
+    }
     void put(const Vec3& to) {
         moved.clear();
         optimiser.nodes_.follow(node, to, moved);

@@ -201,6 +201,7 @@ RepairSummary Repairer::run(bool mayThinLeave) {
     isClean();
     summary_.badCells = static_cast<std::int64_t>(faults_.badCells().size());
     summary_.poorFaces = poor_.all;
+    if (thin_ && !isClean()) summary_.moves += optimiser_.mendKeepingTets(thinSweeps); // of thin layers many faces would cease to divide
     settle();
     if (summary_.remaining > 0) return finish();
     summary_.moves += optimiser_.snapWished(wishSweeps);
