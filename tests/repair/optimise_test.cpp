@@ -1,5 +1,5 @@
 // Proves: on a box whose wall nodes were put in bad places, mend() makes the poor faces vanish and never raises the worst;
-// mendTets() makes all faces divide into tetrahedra within the limits, mendTetsOffWall() those that cannot on the wall;
+// mendKeepingTets() does so without a face that ceases to divide; mendTets() makes all faces divide into tetrahedra within the limits, mendTetsOffWall() those that cannot on the wall;
 // mendFlatAt() raises the determinants of thin cells at the cost of nothing else; pullIn() brings nodes back onto the geometry; snapWished() brings them to a line that they should be on, or leaves them
 // be; no cell turns bad; the same on any number of threads.
 #include "i2b/quality/measures.h"
@@ -109,6 +109,29 @@ TEST(Optimise, MendTetsMakesFacesDivide) {
     for (const std::size_t v : moved) EXPECT_LT(b.offWall(v), 1e-9);
     EXPECT_TRUE(MeshFaults(b.run.mesh, b.cellFaces, limitsOf()).undividedFaces().empty());
     EXPECT_EQ(assemble({b.run.lattice, b.run.kept, b.run.front, b.run.layers, b.run.painted.soup.parts}).checksum(), b.run.mesh.checksum());
+}
+
+// Under a limit that many faces are over, mend() trades faces that divide for lower angles; mendKeepingTets() does not.
+TEST(Optimise, MendKeepingTetsLeavesFacesThatDivide) {
+    std::size_t lost = 0;
+    for (const bool keeps : {false, true}) {
+        Boxed b(limitsOf(30));
+        displaceAlong(b);
+        const std::vector<std::int32_t> undivided = b.faults.undividedFaces();
+        const std::int64_t poor = b.poor();
+        for (int sweep = 0; sweep < 6; ++sweep) {
+            keeps ? b.optimiser.mendKeepingTets(1) : b.optimiser.mend(1);
+            std::vector<std::int32_t> fresh;
+            std::ranges::set_difference(b.faults.undividedFaces(), undivided, std::back_inserter(fresh));
+            if (keeps) EXPECT_TRUE(fresh.empty()) << "sweep " << sweep;
+            else lost += fresh.size();
+        }
+        ASSERT_GT(poor, 100);
+        EXPECT_EQ(b.poor(), 0);
+        EXPECT_LT(b.faults.undividedFaces().size(), undivided.size());
+        EXPECT_TRUE(b.faults.badCells().empty());
+    }
+    EXPECT_GT(lost, 0u); // of mend()
 }
 
 // A face of the wall folded shut between two nodes held to one corner: no move on the wall opens it.

@@ -18,6 +18,7 @@ constexpr std::int64_t manyFaults = 200, fewFaults = 200;
 constexpr int mendSweeps = 12;
 constexpr int bendRounds = 3, thinPause = 4; // of columns bent anew, with sweeps between
 constexpr int thinSweeps = 24;    // of thin layers: all of a column move as one
+constexpr int keepSweeps = 8;     // the first of these, in which no face ceases to divide
 constexpr int wishSweeps = 2;
 constexpr int pullSweeps = 3;
 constexpr int flatSweeps = 12;
@@ -201,7 +202,7 @@ RepairSummary Repairer::run(bool mayThinLeave) {
     isClean();
     summary_.badCells = static_cast<std::int64_t>(faults_.badCells().size());
     summary_.poorFaces = poor_.all;
-    if (thin_ && !isClean()) summary_.moves += optimiser_.mendKeepingTets(thinSweeps); // of thin layers many faces would cease to divide
+    if (thin_ && faults_.countsThinUndivided() && !isClean()) summary_.moves += optimiser_.mendKeepingTets(keepSweeps);
     settle();
     if (summary_.remaining > 0) return finish();
     summary_.moves += optimiser_.snapWished(wishSweeps);
