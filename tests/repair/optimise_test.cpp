@@ -1,7 +1,8 @@
 // Proves: on a box whose wall nodes were put in bad places, mend() makes the poor faces vanish and never raises the worst;
-// mendKeepingTets() does so without a face that ceases to divide; mendTets() makes all faces divide into tetrahedra within the limits, mendTetsOffWall() those that cannot on the wall;
-// mendFlatAt() raises the determinants of thin cells at the cost of nothing else; pullIn() brings nodes back onto the geometry; snapWished() brings them to a line that they should be on, or leaves them
-// be; no cell turns bad; the same on any number of threads.
+// mendKeepingTets() does so without a face that ceases to divide; mendTets() makes all faces divide into tetrahedra within
+// the limits, mendTetsOffWall() those that cannot on the wall; mendFlatAt() raises the determinants of thin cells at the
+// cost of nothing else; pullIn() brings nodes back onto the geometry; snapWished() brings them to a line that they should
+// be on, or leaves them be; no cell turns bad; the same on any number of threads.
 #include "i2b/quality/measures.h"
 #include "i2b/quality/mesh_geometry.h"
 #include "i2b/quality/quality_report.h"
