@@ -236,9 +236,9 @@ bool deepen(Front& front, const LatticeMesh& mesh, const SurfaceIndex& index, co
     const std::vector<Vec3> normals = inwards(front);
     const std::vector<double> depths = depthsWanted(front, normals, index, mesh.lattice().domain(), room);
     const double deepest = orderedReduce(depths.size(), 0.0, [&](Index begin, Index end) { // in h
-        double most = 0;
-        for (Index v = begin; v < end; ++v) most = std::max(most, depths[v] / front.h[v]);
-        return most;
+        double part = 0;
+        for (Index v = begin; v < end; ++v) part = std::max(part, depths[v] / front.h[v]);
+        return part;
     }, [](double a, double b) { return std::max(a, b); });
     if (deepest == 0) return false;
     const int rings = std::clamp(static_cast<int>(std::ceil(deepest / squeeze)), leastRings, mostRings);

@@ -32,7 +32,7 @@ class Optimiser {
     // The nodes of poor and wrong cells, until nothing gets better. Gives how many moves were made. mayLeave: wall nodes
     // need not stay on the geometry.
     std::int64_t mend(int sweeps, bool mayLeave = false);
-    // The same, where no face that divides into tetrahedra may cease to.
+    // The same, where no face that divides into tetrahedra may cease to; where one beside it does not already, all together may not lack more.
     std::int64_t mendKeepingTets(int sweeps);
     // The same of those among these cells (ascending).
     void mendAt(const std::vector<std::int32_t>& cells, int sweeps);

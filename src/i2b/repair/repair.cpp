@@ -202,7 +202,7 @@ RepairSummary Repairer::run(bool mayThinLeave) {
     isClean();
     summary_.badCells = static_cast<std::int64_t>(faults_.badCells().size());
     summary_.poorFaces = poor_.all;
-    if (thin_ && faults_.countsThinUndivided() && !isClean()) summary_.moves += optimiser_.mendKeepingTets(keepSweeps);
+    if (thin_ && faults_.countsThinUndivided()) summary_.moves += optimiser_.mendKeepingTets(keepSweeps);
     settle();
     if (summary_.remaining > 0) return finish();
     summary_.moves += optimiser_.snapWished(wishSweeps);
