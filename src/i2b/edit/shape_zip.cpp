@@ -5,6 +5,7 @@
 #include "i2b/quality/mesh_geometry.h"
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -16,6 +17,7 @@ constexpr double wanted = 0.03;      // share of a face that divides well enough
 constexpr double leastWeight = 0.08; // of a face between cells
 constexpr double withinLimit = 1;    // degrees: as far from the limit of non-orthogonality a face is good
 constexpr double leastDeterminant = 1.5e-3; // of cells that have so much at first: none falls below
+constexpr double margin = 1e-9;      // of a share, for what sums lose
 constexpr double turned = 1;         // cost of a face that points the wrong way
 constexpr double worthwhile = 0.95;  // of what a pass finds wanting, is left
 constexpr int passes = 6, triesPerStep = 3;
@@ -36,14 +38,20 @@ class Shaper {
 
   private:
     double cost(const Column& c) const;
-    void place(const Column& c, const Vec3& by);
     void move(const Column& c, const Vec3& by);
+    void shift(const Column& c, const Vec3& by) {
+        for (Index i = 0; i < c.points.size(); ++i) mesh_.points[Index(c.points[i])] += by * c.share[i];
+    }
+    void beginTries(const Column& c);
+    void endTries(const Column& c);
     double costAfter(const Column& c, const Vec3& by, double bound);
     Vec3 bestMove(const Column& c, double step);
-    Vec3 centreOf(std::int32_t cell) const;
-    double costOf(std::int32_t f) const;
-    double determinantOf(std::int32_t cell) const;
-    double costOfCell(std::int32_t cell) const { return std::max(0.0, 1 - determinantOf(cell) / (least_[Index(cell)] + 1e-300)); }
+    const FaceShape& shapeOf(std::int32_t face);
+    const Vec3& centreOf(std::int32_t cell);
+    Vec3 measureCentre(std::int32_t cell);
+    double costOf(std::int32_t f, double most = std::numeric_limits<double>::infinity()); // or more than that where it is
+    double determinantOf(std::int32_t cell);
+    double costOfCell(std::int32_t cell) { return std::max(0.0, 1 - determinantOf(cell) / (least_[Index(cell)] + 1e-300)); }
 
     PolyMesh& mesh_;
     Rows cellFaces_, pointFaces_;
@@ -51,16 +59,23 @@ class Shaper {
     std::vector<FaceShape> shapes_;
     std::vector<Vec3> centres_; // m, of cells
     std::vector<double> cost_;  // of faces
-    std::vector<Vec3> saved_, savedCentres_;
-    std::vector<FaceShape> savedShapes_;
     std::vector<double> least_, cellCost_; // of cells: determinant not to fall below; what is wanting, over that
+    // While moves of a column are tried: what they change is worked out where it is asked for.
+    static constexpr std::uint32_t settled = ~std::uint32_t(0); // a face or cell that does not change
+    std::uint32_t turn_ = 0;                                    // counts the moves
+    std::vector<std::uint32_t> shapeTurn_, centreTurn_;         // the move that these hold, or settled
+    std::vector<FaceShape> triedShapes_;
+    std::vector<Vec3> triedCentres_;
+    std::vector<std::int32_t> order_;                           // faces: those that cost something come first
+    std::vector<Vec3> saved_;
 };
 
 Shaper::Shaper(PolyMesh& mesh, double leastCosine) : mesh_(mesh), cellFaces_(buildCellFaces(mesh)), pointFaces_(buildPointFaces(mesh)), leastCosine_(leastCosine) {
     shapes_.resize(Index(mesh.faces()));
     for (Index f = 0; f < shapes_.size(); ++f) shapes_[f] = measureFace(mesh, static_cast<std::int32_t>(f));
-    centres_.resize(Index(mesh.cells));
-    for (std::int32_t c = 0; c < mesh.cells; ++c) centres_[Index(c)] = centreOf(c);
+    shapeTurn_.assign(shapes_.size(), settled), triedShapes_.resize(shapes_.size());
+    centres_.resize(Index(mesh.cells)), centreTurn_.assign(centres_.size(), settled), triedCentres_.resize(centres_.size());
+    for (std::int32_t c = 0; c < mesh.cells; ++c) centres_[Index(c)] = measureCentre(c);
     least_.resize(centres_.size()), cellCost_.assign(centres_.size(), 0);
     for (std::int32_t c = 0; c < mesh.cells; ++c) least_[Index(c)] = std::min(leastDeterminant, determinantOf(c));
     cost_.resize(shapes_.size());
@@ -88,33 +103,37 @@ double Shaper::cost(const Column& c) const {
     return sum;
 }
 
-void Shaper::place(const Column& c, const Vec3& by) {
-    for (Index i = 0; i < c.points.size(); ++i) mesh_.points[Index(c.points[i])] += by * c.share[i];
-    for (const std::int32_t f : c.faces) shapes_[Index(f)] = measureFace(mesh_, f);
-    for (const std::int32_t cell : c.cells) centres_[Index(cell)] = centreOf(cell);
-}
-
 void Shaper::move(const Column& c, const Vec3& by) {
-    place(c, by);
+    shift(c, by);
+    for (const std::int32_t f : c.faces) shapes_[Index(f)] = measureFace(mesh_, f);
+    for (const std::int32_t cell : c.cells) centres_[Index(cell)] = measureCentre(cell);
     for (const std::int32_t cell : c.cells) cellCost_[Index(cell)] = costOfCell(cell);
     for (const std::int32_t f : c.judged) cost_[Index(f)] = costOf(f);
 }
 
-// What a move would cost, or more than the bound where it costs more; all is as it was afterwards.
-double Shaper::costAfter(const Column& c, const Vec3& by, double bound) {
-    saved_.clear(), savedShapes_.clear(), savedCentres_.clear();
+void Shaper::beginTries(const Column& c) {
+    turn_ = 0;
+    for (const std::int32_t f : c.faces) shapeTurn_[Index(f)] = 0;
+    for (const std::int32_t cell : c.cells) centreTurn_[Index(cell)] = 0;
+    saved_.clear(), order_ = c.judged;
     for (const std::int32_t p : c.points) saved_.push_back(mesh_.points[Index(p)]);
-    for (const std::int32_t f : c.faces) savedShapes_.push_back(shapes_[Index(f)]);
-    for (const std::int32_t cell : c.cells) savedCentres_.push_back(centres_[Index(cell)]);
-    place(c, by);
-    double sum = 0; // those that cost something already first, determinants, which take longest, at last: most moves cost too much soon
-    for (const bool costs : {true, false})
-        for (Index i = 0; i < c.judged.size() && sum <= bound; ++i)
-            if ((cost_[Index(c.judged[i])] > 0) == costs) sum += costOf(c.judged[i]);
+    std::ranges::stable_partition(order_, [&](std::int32_t f) { return cost_[Index(f)] > 0; });
+}
+
+void Shaper::endTries(const Column& c) {
+    for (const std::int32_t f : c.faces) shapeTurn_[Index(f)] = settled;
+    for (const std::int32_t cell : c.cells) centreTurn_[Index(cell)] = settled;
+}
+
+// What a move would cost, or more than the bound where it costs more; all is as it was afterwards. Most moves cost too much soon:
+// determinants, which take longest, come last.
+double Shaper::costAfter(const Column& c, const Vec3& by, double bound) {
+    ++turn_;
+    shift(c, by);
+    double sum = 0;
+    for (Index i = 0; i < order_.size() && sum <= bound; ++i) sum += costOf(order_[i], bound - sum);
     for (Index i = 0; i < c.cells.size() && sum <= bound; ++i) sum += costOfCell(c.cells[i]);
     for (Index i = 0; i < c.points.size(); ++i) mesh_.points[Index(c.points[i])] = saved_[i];
-    for (Index i = 0; i < c.faces.size(); ++i) shapes_[Index(c.faces[i])] = savedShapes_[i];
-    for (Index i = 0; i < c.cells.size(); ++i) centres_[Index(c.cells[i])] = savedCentres_[i];
     return sum;
 }
 
@@ -122,11 +141,13 @@ double Shaper::costAfter(const Column& c, const Vec3& by, double bound) {
 Vec3 Shaper::bestMove(const Column& c, double step) {
     double best = cost(c) * 0.999;
     Vec3 way;
+    beginTries(c);
     for (int d = 0; d < 6; ++d) {
         const double by = d & 1 ? -step : step;
         const Vec3 move = d / 2 == 0 ? Vec3{by, 0, 0} : d / 2 == 1 ? Vec3{0, by, 0} : Vec3{0, 0, by};
         if (const double now = costAfter(c, move, best); now < best) best = now, way = move;
     }
+    endTries(c);
     return way;
 }
 
@@ -140,32 +161,46 @@ void Shaper::improve(const Column& c, double h) {
     }
 }
 
-Vec3 Shaper::centreOf(std::int32_t cell) const {
+const FaceShape& Shaper::shapeOf(std::int32_t face) {
+    const auto f = Index(face);
+    if (shapeTurn_[f] == settled) return shapes_[f];
+    if (shapeTurn_[f] != turn_) shapeTurn_[f] = turn_, triedShapes_[f] = measureFace(mesh_, face);
+    return triedShapes_[f];
+}
+
+const Vec3& Shaper::centreOf(std::int32_t cell) {
+    const auto c = Index(cell);
+    if (centreTurn_[c] == settled) return centres_[c];
+    if (centreTurn_[c] != turn_) centreTurn_[c] = turn_, triedCentres_[c] = measureCentre(cell);
+    return triedCentres_[c];
+}
+
+Vec3 Shaper::measureCentre(std::int32_t cell) {
     Vec3 middle, sum;
-    for (const std::int32_t f : cellFaces_[cell]) middle += shapes_[Index(f)].centre;
+    for (const std::int32_t f : cellFaces_[cell]) middle += shapeOf(f).centre;
     middle = middle / static_cast<double>(cellFaces_[cell].size());
     double volume = 0;
     for (const std::int32_t f : cellFaces_[cell]) {
-        const FaceShape& s = shapes_[Index(f)];
+        const FaceShape& s = shapeOf(f);
         const double v = std::abs(dot(s.area, s.centre - middle)) + 1e-300;
         volume += v, sum += (s.centre * 0.75 + middle * 0.25) * v;
     }
     return sum / volume;
 }
 
-double Shaper::determinantOf(std::int32_t cell) const {
+double Shaper::determinantOf(std::int32_t cell) {
     std::array<FaceShape, 64> some;
     const std::span<const std::int32_t> faces = cellFaces_[cell];
     const Index n = std::min(faces.size(), some.size());
-    for (Index i = 0; i < n; ++i) some[i] = shapes_[Index(faces[i])];
+    for (Index i = 0; i < n; ++i) some[i] = shapeOf(faces[i]);
     return cellDeterminant(mesh_, faces.first(n), {some.data(), n}, Directions());
 }
 
-double Shaper::costOf(std::int32_t f) const {
-    const FaceShape& s = shapes_[Index(f)];
-    const Vec3& own = centres_[Index(mesh_.owner[Index(f)])];
-    const Vec3* next = f < mesh_.internalFaces() ? &centres_[Index(mesh_.neighbour[Index(f)])] : nullptr;
-    double cost = std::max(0.0, wanted - tetShare(mesh_, f, s.centre, s.area, own, next, wanted));
+double Shaper::costOf(std::int32_t f, double most) {
+    const FaceShape& s = shapeOf(f);
+    const Vec3& own = centreOf(mesh_.owner[Index(f)]);
+    const Vec3* next = f < mesh_.internalFaces() ? &centreOf(mesh_.neighbour[Index(f)]) : nullptr;
+    double cost = std::max(0.0, wanted - tetShare(mesh_, f, s.centre, s.area, own, next, wanted, wanted - most - margin));
     const double from = dot(s.area, s.centre - own);
     if (from <= 0) cost += turned;
     if (!next) return cost;
