@@ -8,8 +8,10 @@
 namespace i2b {
 namespace {
 
-constexpr int mostCuts = 4;   // rounds of cutting walls under cells that cannot be made valid
-constexpr std::size_t mostFolded = 2000; // thin cells, or so many
+constexpr int mostCuts = 4;   // rounds of cutting walls under cells that cannot be made valid,
+constexpr int foldedCuts = 2; // or under thin ones with a face that does not divide:
+constexpr std::size_t fewFolded = 1000;  // of so few again, it is cheaper to move nodes off the wall
+constexpr std::size_t mostFolded = 2000; // or so many
 constexpr double mostFoldedShare = 0.01; // of all layer cells: where more are, their height asks for it
 constexpr int mostTries = 3;  // further ones, without cuts of the fit around such cells
 constexpr int wrongRings = 3; // of cells around them
@@ -33,21 +35,22 @@ RepairSummary assembleAndRepair(const WallInput& in, Walls& walls, PolyMesh& mes
         context, "repair",
         [&] {
             walls.reach = limitsInReach(mesh, in.limits, in.fallback);
-            const auto repaired = [&](bool mayThinLeave) {
-                return repair(mesh, walls.front, in.lattice, layers, startThickness, guide, walls.reach.limits, mayThinLeave);
+            const std::size_t most = std::max(mostFolded, static_cast<std::size_t>(mostFoldedShare * static_cast<double>(layers.cells())));
+            const auto repaired = [&](std::size_t mostToCut) {
+                return repair(mesh, walls.front, in.lattice, layers, startThickness, guide, walls.reach.limits, mostToCut);
             };
             const auto core = static_cast<std::int32_t>(in.lattice.cellCount());
-            RepairSummary r = repaired(false);
-            const std::size_t most = std::max(mostFolded, static_cast<std::size_t>(mostFoldedShare * static_cast<double>(layers.cells())));
+            RepairSummary r = repaired(most);
             const auto isFolded = [&] { return !r.foldedCells.empty() && r.foldedCells.size() <= most; };
             for (int round = 0; (r.remaining > 0 || isFolded()) && round < mostCuts; ++round) {
                 const bool wasWrong = r.remaining > 0;
                 const std::vector<std::uint8_t> moved = std::move(r.movedWalls);
                 if (cutUnderWrong(walls.front, layers, in.plans, *c.index, core, wasWrong ? r.wrongCells : r.foldedCells)) mesh = assemble(parts);
                 else if (wasWrong) break;
-                r = repaired(!wasWrong);
+                const bool again = wasWrong ? round + 1 < mostCuts : round + 1 < foldedCuts && r.foldedCells.size() > fewFolded;
+                r = repaired(again ? most : 0);
                 for (std::size_t v = 0; v < moved.size(); ++v) r.movedWalls[v] |= moved[v];
-                if (!wasWrong && r.remaining == 0) break; // folded ones have had their chance
+                if (!again && r.remaining == 0) break;
             }
             return r;
         },

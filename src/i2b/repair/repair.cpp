@@ -74,7 +74,7 @@ class Repairer {
         : mesh_(mesh), front_(front), lattice_(lattice), layers_(layers), startThickness_(startThickness), limits_(limits), walls_(wallPositions(front)), thin_(layers.areThin()),
           thinFrom_(!layers.areFlat() ? mesh.cells : mesh.cells - static_cast<std::int32_t>(layers.cells())), cellFaces_(buildCellFaces(mesh)),
           faults_(mesh, cellFaces_, strictLimits(limits), thinFrom_, movable(mesh, lattice, front, strictLimits(limits))), optimiser_(mesh, cellFaces_, faults_, front, layers, guide) {}
-    RepairSummary run(bool mayThinLeave);
+    RepairSummary run(std::size_t mostFolded);
 
   private:
     bool isClean() {
@@ -198,7 +198,7 @@ RepairSummary Repairer::finish() {
     return std::move(summary_);
 }
 
-RepairSummary Repairer::run(bool mayThinLeave) {
+RepairSummary Repairer::run(std::size_t mostFolded) {
     isClean();
     summary_.badCells = static_cast<std::int64_t>(faults_.badCells().size());
     summary_.poorFaces = poor_.all;
@@ -210,6 +210,9 @@ RepairSummary Repairer::run(bool mayThinLeave) {
     settle();
     mendSevere();
     optimiser_.mendTets(tetSweeps);
+    summary_.foldedCells = foldedCells();
+    if (!summary_.foldedCells.empty() && summary_.foldedCells.size() <= mostFolded) return finish();
+    const bool mayThinLeave = mostFolded == 0;
     mendLastFaces(mayThinLeave);
     if (mendFlatCells()) mendLastFaces(mayThinLeave); // what is left of them may be faces that do not divide
     summary_.foldedCells = foldedCells();
@@ -220,8 +223,8 @@ RepairSummary Repairer::run(bool mayThinLeave) {
 } // namespace
 
 RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, LayerStack& layers, double startThickness,
-                     const WallGuide& guide, const DictionaryLimits& limits, bool mayThinLeave) {
-    return Repairer(mesh, front, lattice, layers, startThickness, guide, limits).run(mayThinLeave);
+                     const WallGuide& guide, const DictionaryLimits& limits, std::size_t mostFolded) {
+    return Repairer(mesh, front, lattice, layers, startThickness, guide, limits).run(mostFolded);
 }
 
 } // namespace i2b

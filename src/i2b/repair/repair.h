@@ -8,6 +8,7 @@
 #pragma once
 #include "i2b/quality/dictionary_limits.h"
 #include "i2b/repair/optimise.h"
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -31,8 +32,9 @@ struct RepairSummary {
 
 // startThickness: what buildFront() was given. Moves points of mesh, and front positions alike; columns of layers whose
 // wall position steps back lose their bend with it. limits: what the last resort will be asked to hold; where it would not, wall nodes
-// leave the geometry a little, those under thin layers only if they may: cutting the wall under them comes first.
+// leave the geometry a little. Cutting the wall under thin layers comes before that: where so many thin cells as mostFolded or fewer
+// keep a face that does not divide, it ends with these; 0: it goes on to the last.
 RepairSummary repair(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, LayerStack& layers, double startThickness,
-                     const WallGuide& guide, const DictionaryLimits& limits, bool mayThinLeave);
+                     const WallGuide& guide, const DictionaryLimits& limits, std::size_t mostFolded);
 
 } // namespace i2b
