@@ -145,7 +145,7 @@ LastResort changePoorPlaces(PolyMesh& mesh, Rows cellFaces, const std::vector<st
     if (flatAsked) {
         const std::vector<std::int32_t> poor = std::move(faces);
         faces.clear();
-        std::ranges::set_union(poor, facesOfFlatCells(mesh, cellFaces, thinFrom, limits.determinant, mostFlat), std::back_inserter(faces));
+        std::ranges::set_union(poor, facesOfFlatCells(mesh, cellFaces, thinFrom, limits.determinant), std::back_inserter(faces));
     }
     if (faces.empty()) return summary;
     Edited edited = seekInOrders(mesh, cellFaces, faces, limits, thinFrom);

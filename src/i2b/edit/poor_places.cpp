@@ -9,6 +9,7 @@ namespace i2b {
 namespace {
 
 using Index = std::size_t;
+constexpr Index fewFlat = 200, oneIn = 1000; // thin cells of a small determinant, or one in so many of all
 
 // The numbers under n for which a test holds, ascending. make() gives each chunk a test(number) of its own.
 template <class Make>
@@ -47,13 +48,13 @@ std::vector<std::int32_t> concaveFaces(const PolyMesh& mesh, double degrees) {
     return numbersWhere(Index(mesh.faces()), [&] { return isConcave; });
 }
 
-std::vector<std::int32_t> facesOfFlatCells(const PolyMesh& mesh, const Rows& cellFaces, std::int32_t thinFrom, double determinant, std::size_t most) {
+std::vector<std::int32_t> facesOfFlatCells(const PolyMesh& mesh, const Rows& cellFaces, std::int32_t thinFrom, double determinant) {
     const std::vector<std::int32_t> flat = numbersWhere(Index(mesh.cells - thinFrom), [&] {
         return [&, shapes = CellFaceShapes(mesh)](Index i) mutable {
             return cellFullness(shapes.of(cellFaces[thinFrom + static_cast<std::int32_t>(i)])) < determinant;
         };
     });
-    if (flat.size() > most) return {};
+    if (flat.size() > std::max(fewFlat, Index(mesh.cells - thinFrom) / oneIn)) return {};
     std::vector<std::int32_t> faces;
     for (const std::int32_t i : flat) faces.insert(faces.end(), cellFaces[thinFrom + i].begin(), cellFaces[thinFrom + i].end());
     std::sort(faces.begin(), faces.end());

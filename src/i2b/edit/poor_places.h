@@ -10,10 +10,8 @@ namespace i2b {
 // Faces, ascending, with a corner that turns back by about the angle (degrees) or more, as checkMesh asks: by its sine.
 std::vector<std::int32_t> concaveFaces(const PolyMesh& mesh, double degrees);
 
-inline constexpr std::size_t mostFlat = 200; // thin cells of a small determinant, for facesOfFlatCells() to name them
-
-// Faces, ascending, of the thin cells (from thinFrom on) whose determinant (cellFullness) is under a limit; none where more than
-// `most` cells have that: it goes with their height then.
-std::vector<std::int32_t> facesOfFlatCells(const PolyMesh& mesh, const Rows& cellFaces, std::int32_t thinFrom, double determinant, std::size_t most);
+// Faces, ascending, of the thin cells (from thinFrom on) whose determinant (cellFullness) is under a limit; none where more than 200 and
+// one in a thousand have that: it goes with their height then.
+std::vector<std::int32_t> facesOfFlatCells(const PolyMesh& mesh, const Rows& cellFaces, std::int32_t thinFrom, double determinant);
 
 } // namespace i2b

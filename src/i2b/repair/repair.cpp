@@ -22,7 +22,6 @@ constexpr int keepSweeps = 8;     // the first of these, in which no face ceases
 constexpr int wishSweeps = 2;
 constexpr int pullSweeps = 3;
 constexpr int flatSweeps = 12;
-constexpr std::size_t fewFlat = 64; // faces of thin cells of a small determinant that nothing else helps
 constexpr int tetSweeps = 8, offSweeps = 16, offRounds = 2, backRounds = 3;
 
 // A little inside those that the report judges by: checkMesh's, and the user's where they ask for more.
@@ -164,7 +163,7 @@ void Repairer::mendLastFaces(bool mayThinLeave) {
 // resort would not help. Undone where that leaves as many of them, faces that do not divide among them. Gives whether anything moved.
 bool Repairer::mendFlatCells() {
     if (thinFrom_ >= mesh_.cells || !(DictionaryBounds(limits_).determinant > 0)) return false;
-    const auto flatFaces = [&] { return facesOfFlatCells(mesh_, cellFaces_, thinFrom_, limits_.determinant, mostFlat); };
+    const auto flatFaces = [&] { return facesOfFlatCells(mesh_, cellFaces_, thinFrom_, limits_.determinant); };
     const auto left = [&](const std::vector<std::int32_t>& flat) {
         std::vector<std::int32_t> all;
         std::ranges::set_union(flat, faults_.undividedFaces(), std::back_inserter(all));
@@ -172,11 +171,12 @@ bool Repairer::mendFlatCells() {
     };
     const std::vector<std::int32_t> flat = flatFaces();
     const std::vector<std::int32_t> before = flat.empty() ? flat : left(flat);
-    if (before.empty() || before.size() > fewFlat) return false;
+    if (before.empty()) return false;
     FaultCount was, now;
     faults_.poorCells(was);
     optimiser_.track();
     optimiser_.mendFlatAt(thinCellsAt(mesh_, before, thinFrom_), flatSweeps);
+    optimiser_.mend(mendSweeps); // what that has made poor
     faults_.poorCells(now);
     const bool isBetter = faults_.badCells().empty() && now.all <= was.all && left(flatFaces()).size() < before.size();
     isBetter ? optimiser_.keep() : optimiser_.undo();
