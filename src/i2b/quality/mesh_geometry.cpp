@@ -13,14 +13,16 @@ constexpr double tinyVolume = 1e-300; // below it a cell has no volume to weigh 
 
 FaceShape measureFace(const PolyMesh& mesh, std::int32_t face) {
     const std::span<const std::int32_t> v = mesh.face(face);
-    const auto gather = [&](Vec3* points) {
-        for (Index i = 0; i < v.size(); ++i) points[i] = mesh.points[Index(v[i])];
-    };
-    if (v.size() == 4) {
-        const auto at = [&](Index i) -> const Vec3& { return mesh.points[Index(v[i])]; };
-        return shapeOfQuad(at(0), at(1), at(2), at(3));
+    const auto at = [&](Index i) -> const Vec3& { return mesh.points[Index(v[i])]; };
+    if (v.size() == 4) return shapeOfQuad(at(0), at(1), at(2), at(3));
+    if (v.size() == 3) {
+        const std::array<Vec3, 3> three{at(0), at(1), at(2)};
+        return shapeOfPolygon(three.data(), 3);
     }
-    if (std::array<Vec3, 16> few; v.size() <= few.size()) {
+    const auto gather = [&](Vec3* points) {
+        for (Index i = 0; i < v.size(); ++i) points[i] = at(i);
+    };
+    if (std::array<Vec3, 8> few; v.size() <= few.size()) { // more would take long to be made
         gather(few.data());
         return shapeOfPolygon(few.data(), v.size());
     }
