@@ -143,9 +143,9 @@ LastResort changePoorPlaces(PolyMesh& mesh, Rows cellFaces, const std::vector<st
     const bool flatAsked = thinFrom < mesh.cells && DictionaryBounds(limits).determinant > 0;
     if (faces.empty() && !flatAsked) return summary;
     if (flatAsked) {
-        const std::vector<std::int32_t> poor = std::move(faces);
+        const std::vector<std::int32_t> poor = std::move(faces), flat = facesOfFlatCells(mesh, cellFaces, thinFrom, limits.determinant).value_or(std::vector<std::int32_t>());
         faces.clear();
-        std::ranges::set_union(poor, facesOfFlatCells(mesh, cellFaces, thinFrom, limits.determinant), std::back_inserter(faces));
+        std::ranges::set_union(poor, flat, std::back_inserter(faces));
     }
     if (faces.empty()) return summary;
     Edited edited = seekInOrders(mesh, cellFaces, faces, limits, thinFrom);

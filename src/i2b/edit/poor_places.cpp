@@ -48,7 +48,7 @@ std::vector<std::int32_t> concaveFaces(const PolyMesh& mesh, double degrees) {
     return numbersWhere(Index(mesh.faces()), [&] { return isConcave; });
 }
 
-std::vector<std::int32_t> facesOfFlatCells(const PolyMesh& mesh, const Rows& cellFaces, std::int32_t thinFrom, double determinant) {
+std::optional<std::vector<std::int32_t>> facesOfFlatCells(const PolyMesh& mesh, const Rows& cellFaces, std::int32_t thinFrom, double determinant) {
     const std::vector<std::int32_t> flat = numbersWhere(Index(mesh.cells - thinFrom), [&] {
         return [&, shapes = CellFaceShapes(mesh)](Index i) mutable {
             return cellFullness(shapes.of(cellFaces[thinFrom + static_cast<std::int32_t>(i)])) < determinant;

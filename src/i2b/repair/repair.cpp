@@ -9,6 +9,7 @@
 #include "i2b/repair/step_back.h"
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 namespace i2b {
 namespace {
@@ -169,8 +170,9 @@ bool Repairer::mendFlatCells() {
         std::ranges::set_union(flat, faults_.undividedFaces(), std::back_inserter(all));
         return facesBeyondHelp(mesh_, cellFaces_, all, limits_, thinFrom_);
     };
-    const std::vector<std::int32_t> flat = flatFaces();
-    const std::vector<std::int32_t> before = flat.empty() ? flat : left(flat);
+    const std::optional<std::vector<std::int32_t>> flat = flatFaces();
+    if (!flat || flat->empty()) return false;
+    const std::vector<std::int32_t> before = left(*flat);
     if (before.empty()) return false;
     FaultCount was, now;
     faults_.poorCells(was);
@@ -178,7 +180,8 @@ bool Repairer::mendFlatCells() {
     optimiser_.mendFlatAt(thinCellsAt(mesh_, before, thinFrom_), flatSweeps);
     optimiser_.mend(mendSweeps); // what that has made poor
     faults_.poorCells(now);
-    const bool isBetter = faults_.badCells().empty() && now.all <= was.all && left(flatFaces()).size() < before.size();
+    const std::optional<std::vector<std::int32_t>> after = flatFaces();
+    const bool isBetter = faults_.badCells().empty() && now.all <= was.all && after && left(*after).size() < before.size();
     isBetter ? optimiser_.keep() : optimiser_.undo();
     return isBetter;
 }
