@@ -143,7 +143,8 @@ LastResort changePoorPlaces(PolyMesh& mesh, Rows cellFaces, const std::vector<st
     const bool flatAsked = thinFrom < mesh.cells && DictionaryBounds(limits).determinant > 0;
     if (faces.empty() && !flatAsked) return summary;
     if (flatAsked) {
-        const std::vector<std::int32_t> poor = std::move(faces), flat = facesOfFlatCells(mesh, cellFaces, thinFrom, limits.determinant).value_or(std::vector<std::int32_t>());
+        const std::vector<std::int32_t> poor = std::move(faces);
+        const std::vector<std::int32_t> flat = facesOfFlatCells(mesh, cellFaces, thinFrom, limits.determinant).value_or(std::vector<std::int32_t>());
         faces.clear();
         std::ranges::set_union(poor, flat, std::back_inserter(faces));
     }

@@ -45,9 +45,10 @@ RepairSummary assembleAndRepair(const WallInput& in, Walls& walls, PolyMesh& mes
             for (int round = 0; (r.remaining > 0 || isFolded()) && round < mostCuts; ++round) {
                 const bool wasWrong = r.remaining > 0;
                 const std::vector<std::uint8_t> moved = std::move(r.movedWalls);
-                if (cutUnderWrong(walls.front, layers, in.plans, *c.index, core, wasWrong ? r.wrongCells : r.foldedCells)) mesh = assemble(parts);
+                const bool isCut = cutUnderWrong(walls.front, layers, in.plans, *c.index, core, wasWrong ? r.wrongCells : r.foldedCells);
+                if (isCut) mesh = assemble(parts);
                 else if (wasWrong) break;
-                const bool again = wasWrong ? round + 1 < mostCuts : round + 1 < foldedCuts && r.foldedCells.size() > fewFolded;
+                const bool again = isCut && (wasWrong ? round + 1 < mostCuts : round + 1 < foldedCuts && r.foldedCells.size() > fewFolded);
                 r = repaired(again ? most : 0);
                 for (std::size_t v = 0; v < moved.size(); ++v) r.movedWalls[v] |= moved[v];
                 if (!again && r.remaining == 0) break;
