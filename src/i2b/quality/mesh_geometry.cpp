@@ -17,7 +17,7 @@ FaceShape measureFace(const PolyMesh& mesh, std::int32_t face) {
     if (v.size() == 4) return shapeOfQuad(at(0), at(1), at(2), at(3));
     if (v.size() == 3) {
         const std::array<Vec3, 3> three{at(0), at(1), at(2)};
-        return shapeOfPolygon(three.data(), 3);
+        return shapeOfPolygon(three.data(), three.size());
     }
     const auto gather = [&](Vec3* points) {
         for (Index i = 0; i < v.size(); ++i) points[i] = at(i);
