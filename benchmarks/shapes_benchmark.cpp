@@ -1,9 +1,9 @@
 // How well the wall follows the test shapes (tests/pipeline/shapes.h): every shape, side, size and random pose is meshed and
 // measured. One line a shape and side: the worst and the mean over all its runs. For those who work on the fit.
 //
-//     shapes_benchmark [--poses N] [--sizes H,H,...] [--runs FILE.csv] [--ply FOLDER] [SHAPE[:outside|:inside] ...]
+//     shapes_benchmark [--poses N] [--sizes H,H,...] [--runs FILE.csv] [--lost FILE.csv] [--ply FOLDER] [SHAPE[:outside|:inside] ...]
 //
-// --poses 10 by default; --runs writes a line for every run; --ply writes every wall, SHAPE-SIDE-H-POSE.ply, and what it is of, SHAPE-H-POSE.stl.
+// --poses 10 by default; --runs writes a line for every run, --lost one for every stretch of a sharp edge that is not captured; --ply writes every wall, SHAPE-SIDE-H-POSE.ply, and what it is of, SHAPE-H-POSE.stl.
 #include "i2b/geometry/write_stl.h"
 #include "i2b/write/ply_write.h"
 #include "pipeline/shape_run.h"
@@ -22,7 +22,7 @@ using namespace i2b::test;
 struct Arguments {
     unsigned poses = 10;
     std::vector<double> sizes{shapeSizes.begin(), shapeSizes.end()};
-    std::string runs, ply;
+    std::string runs, lost, ply;
     std::vector<std::string> shapes; // empty: all
 };
 
@@ -47,6 +47,8 @@ Arguments read(int argc, char** argv) {
             a.sizes = numbersIn(value());
         else if (word == "--runs")
             a.runs = value();
+        else if (word == "--lost")
+            a.lost = value();
         else if (word == "--ply")
             a.ply = value();
         else if (word.starts_with("-"))
@@ -113,13 +115,22 @@ void record(std::ofstream& out, const std::string& name, double h, unsigned pose
         << std::flush;
 }
 
-Figures measure(const Shape& shape, Side side, const Arguments& a, std::ofstream& runs) {
+void recordLost(std::ofstream& out, const std::string& name, double h, unsigned pose, const ShapeRun& run) {
+    if (!out.is_open()) return;
+    for (const LostEdge& e : run.fit.lostEdges.first)
+        out << fmt::format("{},{},{},{},{:.2f},{:.5f},{:.5f},{:.5f}\n", name, h, pose, nameOf(e.cause), e.length / h, e.at.x, e.at.y, e.at.z);
+    out << std::flush;
+}
+
+Figures measure(const Shape& shape, Side side, const Arguments& a, std::ofstream& runs, std::ofstream& lost) {
     Figures figures;
     for (const double h : a.sizes)
         for (unsigned pose = 0; pose < a.poses; ++pose) {
             const ShapeRun run = meshShape(shape, side, h, pose);
             figures.add(run);
-            record(runs, fmt::format("{}:{}", shape.name, nameOf(side)), h, pose, run);
+            const std::string name = fmt::format("{}:{}", shape.name, nameOf(side));
+            record(runs, name, h, pose, run);
+            recordLost(lost, name, h, pose, run);
             if (a.ply.empty() || run.mesh.cells == 0) continue;
             writePly(run.mesh, fmt::format("{}/{}-{}-{}-{}.ply", a.ply, shape.name, nameOf(side), h, pose), Context());
             writeStl(posed(shape, h, pose).soup, fmt::format("{}/{}-{}-{}.stl", a.ply, shape.name, h, pose), StlFormat::binary);
@@ -138,7 +149,11 @@ bool wanted(const Arguments& a, const Shape& shape, Side side) {
 int main(int argc, char** argv) try {
     const Arguments a = read(argc, argv);
     if (!a.ply.empty()) std::filesystem::create_directories(a.ply);
-    std::ofstream runs;
+    std::ofstream runs, lost;
+    if (!a.lost.empty()) {
+        lost.open(a.lost);
+        lost << "shape,h,pose,cause,length_h,x,y,z\n";
+    }
     if (!a.runs.empty()) {
         runs.open(a.runs);
         runs << "shape,h,pose,cells,non_orthogonality,skewness,capture,samples,sampled,nodes_on_geometry,tilted,"
@@ -152,7 +167,7 @@ int main(int argc, char** argv) try {
                              "runs", "inv", "bad", "n-o", "skew", "ext", "captured %", "of %", "nodes on %", "tilted %", "off h");
     for (const Shape& shape : shapes())
         for (const Side side : {Side::outside, Side::inside})
-            if (wanted(a, shape, side)) print(fmt::format("{}:{}", shape.name, nameOf(side)), measure(shape, side, a, runs));
+            if (wanted(a, shape, side)) print(fmt::format("{}:{}", shape.name, nameOf(side)), measure(shape, side, a, runs, lost));
     return 0;
 } catch (const std::exception& e) {
     std::cerr << "shapes_benchmark: " << e.what() << '\n';

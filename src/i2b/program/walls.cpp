@@ -27,7 +27,8 @@ RepairSummary assembleAndRepair(const WallInput& in, Walls& walls, PolyMesh& mes
     const GridResult& c = in.cartesian;
     LayerStack& layers = walls.laid.stack;
     const FeatureIndex lines(in.features, Creases::leftOut);
-    const WallGuide guide{*c.index, lines, walls.fitted.snaps, walls.fitted.wishes};
+    const bool seeksEdges = in.fit.features && !walls.fitted.cutShort;
+    const WallGuide guide{*c.index, lines, walls.fitted.snaps, walls.fitted.wishes, seeksEdges ? &in.features : nullptr};
     const AssembleInput parts{in.lattice, c.kept, walls.front, layers, c.surface.parts};
     mesh = stage(
         context, "assemble", [&] { return assemble(parts); }, [](const PolyMesh& m) { return m.cells; });

@@ -122,6 +122,15 @@ void Optimiser::findStar(const Task& task, Worker& worker, Star& star) const {
     star.reads.shrink_to_fit();
 }
 
+const Optimiser::Star& Optimiser::starOf(const MeshNode& node, std::int32_t cell) {
+    Star& star = stars_[node];
+    if (star.cells.empty()) {
+        Worker worker(*this);
+        findStar({node, cell}, worker, star);
+    }
+    return star;
+}
+
 // Groups of tasks that may go at once: no cell that one changes is read by another. Those beyond 64 colours wait for
 // the next sweep.
 std::vector<std::vector<std::uint32_t>> Optimiser::colour(const std::vector<Task>& tasks) const {
@@ -265,16 +274,21 @@ std::vector<Optimiser::Task> Optimiser::tasksOfCellsAt(const std::vector<std::in
     return tasksOf(cells);
 }
 
-void Optimiser::mendTets(int sweeps) {
+void Optimiser::mendTets(int sweeps, const std::vector<std::int32_t>& but) {
     allMayLeave(false);
-    std::vector<std::int32_t> faces = faults_.undividedFaces();
+    const auto facesLeft = [&] {
+        std::vector<std::int32_t> left;
+        std::ranges::set_difference(faults_.undividedFaces(), but, std::back_inserter(left));
+        return left;
+    };
+    std::vector<std::int32_t> faces = facesLeft();
     RestingNodes resting;
     for (const bool wide : {false, true}) {
         for (int i = 0; i < sweeps && !faces.empty(); ++i) {
             std::vector<Task> tasks = wide ? tasksOfCellsAt(faces) : tasksOfFaces(faces);
             const std::int64_t moves = sweep(tasks, [&](const Task& t, Worker& w) { return mendNodeTets(t, w); }, &resting);
             const auto before = static_cast<double>(faces.size());
-            faces = faults_.undividedFaces();
+            faces = facesLeft();
             if (moves == 0 || (faces.size() > few && static_cast<double>(faces.size()) > stalled * before)) break;
         }
     }
@@ -301,6 +315,13 @@ void Optimiser::undo() {
     for (const auto& [node, from] : *tracked_) back.push_back(from);
     tracked_.reset();
     moveTogether(back);
+}
+
+void Optimiser::moveBack(const std::vector<MeshNode>& nodes) {
+    std::vector<NodeMove> back;
+    for (const MeshNode& node : nodes) back.push_back(tracked_->at(node));
+    moveTogether(back);
+    for (const MeshNode& node : nodes) tracked_->erase(node);
 }
 
 Optimiser::NodeMove Optimiser::whereIs(const MeshNode& node, std::int32_t cell) const {

@@ -22,6 +22,7 @@ struct WallGuide {
     const FeatureIndex& features;
     std::vector<Snap>& snaps;        // per vertex of the front; those that the fit put in may be missing
     const std::vector<Snap>& wishes; // the same: features that others should be brought to, if that can be; or none
+    const FeatureGraph* graph = nullptr; // whose sharp edges the wall is to have; none: it stays as it is
 };
 
 class Optimiser {
@@ -39,8 +40,8 @@ class Optimiser {
     // The nodes of these thin cells, whose determinants count then, which a limit for all cells has them keep to.
     void mendFlatAt(const std::vector<std::int32_t>& cells, int sweeps);
     // The nodes of faces that do not divide into tetrahedra or turn back at a corner, then all of the cells beside them, within all
-    // other limits.
-    void mendTets(int sweeps);
+    // other limits. but: faces that stay as they are, ascending.
+    void mendTets(int sweeps, const std::vector<std::int32_t>& but = {});
     // The same of the cells beside these faces only, where theirs at the wall may leave the geometry by up to a fifth of a cell. They come
     // back as far as that undoes nothing.
     void mendTetsOffWall(std::vector<std::int32_t> faces, int sweeps);
@@ -57,9 +58,16 @@ class Optimiser {
     void track() { tracked_.emplace(); }
     void comeBack(int sweeps, const std::vector<std::int32_t>& butAt = {});
     std::vector<NodeMove> trackedPlaces() const; // where those are that have moved
+    const std::map<MeshNode, NodeMove>& tracked() const { return *tracked_; } // where they were; only since track()
+    void moveBack(const std::vector<MeshNode>& nodes); // of the tracked ones, which are forgotten
     void keep() { tracked_.reset(); }
     void undo();
     const MeshNodes& nodes() const { return nodes_; }
+    struct Star {
+        std::vector<std::int32_t> cells;    // all that use a point of the node, ascending
+        std::vector<std::int32_t> reads;    // these and those beyond their faces: what a move is judged by
+    };
+    const Star& starOf(const MeshNode& node, std::int32_t cell); // a cell that uses a point of the node
     // Columns of poor and wrong cells more or less bent.
     std::int64_t bend();
     // Nodes to the features that they should be on; those that get there are held to them.
@@ -68,10 +76,6 @@ class Optimiser {
     std::int64_t pullIn(int sweeps);
 
   private:
-    struct Star {
-        std::vector<std::int32_t> cells;    // all that use a point of the node, ascending
-        std::vector<std::int32_t> reads;    // these and those beyond their faces: what a move is judged by
-    };
     struct Task {
         MeshNode node;
         std::int32_t cell = -1;             // one that uses a point of the node

@@ -5,6 +5,7 @@
 #include "i2b/edit/poor_places.h"
 #include "i2b/quality/dictionary_measure.h"
 #include "i2b/quality/mesh_faults.h"
+#include "i2b/repair/recapture.h"
 #include "i2b/repair/retreat.h"
 #include "i2b/repair/step_back.h"
 #include <algorithm>
@@ -73,7 +74,7 @@ class Repairer {
     Repairer(PolyMesh& mesh, Front& front, const LatticeMesh& lattice, LayerStack& layers, double startThickness, const WallGuide& guide, const DictionaryLimits& limits)
         : mesh_(mesh), front_(front), lattice_(lattice), layers_(layers), startThickness_(startThickness), limits_(limits), walls_(wallPositions(front)), thin_(layers.areThin()),
           thinFrom_(!layers.areFlat() ? mesh.cells : mesh.cells - static_cast<std::int32_t>(layers.cells())), cellFaces_(buildCellFaces(mesh)),
-          faults_(mesh, cellFaces_, strictLimits(limits), thinFrom_, movable(mesh, lattice, front, strictLimits(limits))), optimiser_(mesh, cellFaces_, faults_, front, layers, guide) {}
+          faults_(mesh, cellFaces_, strictLimits(limits), thinFrom_, movable(mesh, lattice, front, strictLimits(limits))), guide_(guide), optimiser_(mesh, cellFaces_, faults_, front, layers, guide) {}
     RepairSummary run(std::size_t mostFolded);
 
   private:
@@ -101,6 +102,7 @@ class Repairer {
     Rows cellFaces_;
     MeshFaults faults_;
     FaultCount poor_;         // when isClean() was last asked
+    const WallGuide& guide_;
     Optimiser optimiser_;
     RepairSummary summary_;
 };
@@ -218,6 +220,7 @@ RepairSummary Repairer::run(std::size_t mostFolded) {
     const bool mayThinLeave = mostFolded == 0;
     mendLastFaces(mayThinLeave);
     if (mendFlatCells()) mendLastFaces(mayThinLeave); // what is left of them may be faces that do not divide
+    if (guide_.graph) summary_.recaptured = recapture(mesh_, cellFaces_, faults_, front_, guide_, optimiser_);
     summary_.foldedCells = foldedCells();
     summary_.unmended = faults_.poorFaces();
     return finish();

@@ -4,7 +4,8 @@
 // right by construction, and so on until none is left. The slope of the retreat is bounded, so that it ends smoothly. For
 // faces still over the limits of quality single wall nodes leave the geometry first, as a node that is a little off the
 // wall is worth less than a mesh that passes its checks; the retreat comes last, as far as it helps, since it takes whole
-// regions along. At the end wall nodes go on to their features and onto the geometry where no limit forbids it.
+// regions along. At the end wall nodes go on to their features and onto the geometry where no limit forbids it, and sharp edges that the wall
+// has missed are sought anew (recapture.h).
 #pragma once
 #include "i2b/quality/dictionary_limits.h"
 #include "i2b/repair/optimise.h"
@@ -24,6 +25,7 @@ struct RepairSummary {
     std::int64_t poorFaces = 0;  // faces over the limits of non-orthogonality, skewness, weight or volume ratio at the
                                  // beginning, and cells of small determinant
     std::int64_t poorRemaining = 0;
+    std::int64_t recaptured = 0; // wall nodes brought to sharp edges that the wall had missed
     std::vector<std::int32_t> foldedCells; // thin ones with a face that does not divide, ascending
     std::vector<std::int32_t> unmended;    // faces with any fault at the end, and those of cells with one
     Rows cellFaces;                       // of the mesh, whose points alone have changed
