@@ -15,6 +15,7 @@ constexpr int rounds = 8;                      // of tries, the first of
 constexpr int roundsTogether = 1;              // which are of all nodes at once: of two that miss one edge none may help alone
 constexpr int rings = 3;                       // of wall faces around a node whose samples may come or go with it
 constexpr double tooNear = 0.2;                 // of h: nodes that go to one edge stay so far apart
+constexpr double mayBeOff = 0.01;               // of h: a node nearer to the geometry is on it
 constexpr int mendSweeps = 12, tetSweeps = 4;
 
 class Recapture {
@@ -98,12 +99,16 @@ class Recapture {
         optimiser_.mendAt(cells, mendSweeps);
     }
 
-    // Cells with a fault that was not there before; withTets: also those of faces that have ceased to divide.
-    std::vector<std::int32_t> newlyPoor(bool withTets) const {
-        std::vector<std::int32_t> cells, faces;
+    // Cells with a fault that was not there before.
+    std::vector<std::int32_t> newlyPoor() const {
+        std::vector<std::int32_t> cells;
         std::ranges::set_difference(poorCells(), poor_, std::back_inserter(cells));
-        if (withTets) std::ranges::set_difference(faults_.undividedFaces(), undivided_, std::back_inserter(faces));
-        for (const std::int32_t f : faces) {
+        return cells;
+    }
+
+    std::vector<std::int32_t> cellsOfUndivided() const {
+        std::vector<std::int32_t> cells;
+        for (const std::int32_t f : faults_.undividedFaces()) {
             cells.push_back(mesh_.owner[Index(f)]);
             if (f < mesh_.internalFaces()) cells.push_back(mesh_.neighbour[Index(f)]);
         }
@@ -119,9 +124,35 @@ class Recapture {
         return part;
     }
 
-    // Per part whether it is to stay: it has made no cell poor and, at last, no face that does not divide, and captures more of the samples
-    // than before. (One that captures no more may come together with one that does when faces are made to divide.)
+    // Has a node that has moved not left the geometry for it?
+    bool staysOn(const MeshNode& node) const {
+        if (node.kind != MeshNode::wall) return true;
+        const double off = mayBeOff * front_.h[Index(node.id)];
+        const double before = std::max(off, guide_.index.closest(optimiser_.tracked().at(node).to).distance);
+        return bool(guide_.index.closest(front_.wall(Index(node.id)), before * (1 + 1e-9)));
+    }
+
+    // Per part whether it is to stay: it has made no cell poor. At last also: it captures more of the samples than before, has taken no node off
+    // the geometry and no face that it has changed fails to divide; one that did before would be left to the last resort, which might not help as
+    // it is now. (A part that captures no more may come together with one that does when faces are made to divide.)
     std::vector<std::uint8_t> areGood(const MovedParts& parts, const Try& now, bool isLast) {
+        std::vector<std::uint8_t> good(parts.nodes.size(), 1);
+        const auto spoil = [&](const MovedParts::Cells& cells, const std::vector<std::int32_t>& faulty) {
+            for (const std::int32_t c : faulty) MovedParts::forPartsOf(cells, c, [&](std::int32_t p) { good[Index(p)] = 0; });
+        };
+        spoil(parts.read, newlyPoor());
+        if (!isLast) return good;
+        spoil(parts.changed, cellsOfUndivided());
+        for (Index n = 0; n < parts.nodes.size(); ++n)
+            if (!staysOn(parts.nodes[n])) good[Index(parts.partOf[n])] = 0;
+        const std::vector<std::int64_t> gain = gainsOf(parts, now);
+        for (Index p = 0; p < good.size(); ++p)
+            if (gain[p] <= 0) good[p] = 0;
+        return good;
+    }
+
+    // Per part how many samples more than before are captured.
+    std::vector<std::int64_t> gainsOf(const MovedParts& parts, const Try& now) {
         const std::vector<std::uint32_t>& samples = now.samples;
         std::vector<std::int64_t> gain(parts.nodes.size(), 0);
         samples_.judge(samples);
@@ -130,10 +161,23 @@ class Recapture {
             const std::int32_t part = more != 0 ? partAt(parts, samples[i]) : -1;
             if (part >= 0) gain[Index(part)] += more;
         }
-        std::vector<std::uint8_t> good(parts.nodes.size(), 0);
-        for (Index p = 0; p < good.size(); ++p) good[p] = gain[p] > 0 || !isLast;
-        for (const std::int32_t c : newlyPoor(isLast)) MovedParts::forPartsOf(parts.read, c, [&](std::int32_t p) { good[Index(p)] = 0; });
-        return good;
+        return gain;
+    }
+
+    static std::vector<MeshNode> nodesOf(const std::map<MeshNode, Optimiser::NodeMove>& tracked) {
+        std::vector<MeshNode> nodes;
+        for (const auto& [node, from] : tracked) nodes.push_back(node);
+        return nodes;
+    }
+
+    void goBack(Try& now, const std::vector<MeshNode>& nodes) {
+        optimiser_.moveBack(nodes);
+        for (const MeshNode& node : nodes) {
+            const auto was = node.kind == MeshNode::wall ? now.held.find(node.id) : now.held.end();
+            if (was == now.held.end()) continue;
+            guide_.snaps[Index(node.id)] = was->second;
+            now.held.erase(was);
+        }
     }
 
     // The parts that are not to stay go back.
@@ -141,16 +185,9 @@ class Recapture {
         const MovedParts parts(optimiser_);
         const std::vector<std::uint8_t> good = areGood(parts, now, isLast);
         std::vector<MeshNode> back;
-        for (Index n = 0; n < parts.nodes.size(); ++n) {
-            if (good[Index(parts.partOf[n])]) continue;
-            const MeshNode& node = parts.nodes[n];
-            back.push_back(node);
-            const auto was = node.kind == MeshNode::wall ? now.held.find(node.id) : now.held.end();
-            if (was == now.held.end()) continue;
-            guide_.snaps[Index(node.id)] = was->second;
-            now.held.erase(was);
-        }
-        optimiser_.moveBack(back);
+        for (Index n = 0; n < parts.nodes.size(); ++n)
+            if (!good[Index(parts.partOf[n])]) back.push_back(parts.nodes[n]);
+        goBack(now, back);
     }
 
     // Gives how many nodes stay where they were wanted.
@@ -165,6 +202,7 @@ class Recapture {
         keepGood(now, false);
         optimiser_.mendTets(tetSweeps, undivided_); // which takes longest
         keepGood(now, true);
+        if (!newlyPoor().empty()) goBack(now, nodesOf(optimiser_.tracked())); // parts are apart, so that none should be
         optimiser_.keep();
         samples_.judge(now.samples);
         return static_cast<std::int64_t>(now.held.size());
