@@ -20,10 +20,16 @@ SharpSamples::SharpSamples(const PolyMesh& mesh, const Rows& cellFaces, const Fe
     const SurfaceIndex edgeIndex(edges_);
     const Surface creases = creaseSurface(mesh, wall_);
     const SurfaceIndex creaseIndex(creases);
-    samples_ = captureLines(mesh, wall_, edges_, edgeIndex, sharpThatCount(wall_, index, edges_), [](const Vec3&, std::uint32_t, const WallPlace&) { return false; }).lost;
+    const auto isCaptured = [&](const Vec3& p, double h) { return bool(creaseIndex.closest(p, capturedWithin * h)); };
+    const LineAsk counts = sharpThatCount(wall_, index, edges_);
+    samples_ = captureLines(
+                   mesh, wall_, edges_, edgeIndex, // the test of what counts takes longest
+                   [&](const Vec3& p, std::uint32_t line, const WallPlace& at) { return isCaptured(p, at.h) || counts(p, line, at); },
+                   [](const Vec3&, std::uint32_t, const WallPlace&) { return false; })
+                   .lost;
     std::ranges::stable_sort(samples_, {}, [](const LostSample& s) { return s.at.face; });
     captured_.resize(samples_.size());
-    parallelFor(samples_.size(), [&](Index i) { captured_[i] = bool(creaseIndex.closest(samples_[i].point, capturedWithin * samples_[i].at.h)); }, 256);
+    parallelFor(samples_.size(), [&](Index i) { captured_[i] = isCaptured(samples_[i].point, samples_[i].at.h); }, 256);
     facesAt_.resize(2 * wall_.edges.size());
     parallelFor(wall_.edges.size(), [&](Index i) {
         const WallEdge& e = wall_.edges[i];

@@ -1,5 +1,5 @@
 // The samples of the geometry's sharp edges by which a wall is judged (fit_report.h), and which of them it has captured; anew for those at
-// a part of the wall whose points have moved.
+// a part of the wall whose points have moved. Captured ones are among them whether they count or not: that takes longest to find out.
 #pragma once
 #include "i2b/geometry/surface_index.h"
 #include "i2b/quality/fit_wall.h"
@@ -22,7 +22,7 @@ class SharpSamples {
     SharpSamples(const PolyMesh& mesh, const Rows& cellFaces, const FeatureGraph& features, const SurfaceIndex& index);
 
     const Surface& edges() const { return edges_; } // as triangles without area: LostSample::line is a place among them
-    const std::vector<LostSample>& samples() const { return samples_; } // all that count, by the faces that they are at
+    const std::vector<LostSample>& samples() const { return samples_; } // by the faces that they are at
     bool isCaptured(std::size_t sample) const { return captured_[sample] != 0; }
     std::int32_t meshFace(std::int32_t face) const { return wall_.faces[static_cast<std::size_t>(face)]; }
 
