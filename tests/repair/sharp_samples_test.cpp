@@ -15,7 +15,7 @@ std::size_t lostOf(const SharpSamples& s) {
 
 TEST(SharpSamples, AreThoseOfTheReport) {
     Boxed b;
-    const SharpSamples samples(b.run.mesh, b.cellFaces, b.run.graph, *b.run.painted.index);
+    const SharpSamples samples(b.run.mesh, b.cellFaces, b.run.graph, *b.run.painted.index, stagesSize);
     const FitReport fit = measureFit(b.run.mesh, b.cellFaces, *b.run.painted.index, b.run.graph);
     ASSERT_GT(fit.featureSamples, 500);
     EXPECT_EQ(static_cast<std::int64_t>(samples.samples().size()), fit.featureSamples);
@@ -24,7 +24,7 @@ TEST(SharpSamples, AreThoseOfTheReport) {
 
 TEST(SharpSamples, AreJudgedAnewWherePointsMove) {
     Boxed b;
-    SharpSamples samples(b.run.mesh, b.cellFaces, b.run.graph, *b.run.painted.index);
+    SharpSamples samples(b.run.mesh, b.cellFaces, b.run.graph, *b.run.painted.index, stagesSize);
     const std::size_t lost = lostOf(samples);
     std::vector<std::uint32_t> all(samples.samples().size());
     for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;

@@ -36,12 +36,14 @@ double degreesBetween(const Vec3& a, const Vec3& b) {
     return std::atan2(norm(cross(a, b)), dot(a, b)) * (180 / std::numbers::pi);
 }
 
-Surface sharpSurface(const FeatureGraph& features, const Wall& wall, const SurfaceIndex& index) {
+double sizeOfMost(const Wall& wall) {
+    std::vector<double> sizes = wall.faceH;
+    return median(sizes);
+}
+
+Surface sharpSurface(const FeatureGraph& features, double h, const SurfaceIndex& index) {
     std::vector<std::uint8_t> rims(features.edges.size(), 0);
-    if (features.rimEdges > 0) {
-        std::vector<double> sizes = wall.faceH;
-        rims = findRims(features, index, {}, rimGap * median(sizes));
-    }
+    if (features.rimEdges > 0) rims = findRims(features, index, {}, rimGap * h);
     Surface s;
     for (std::size_t i = 0; i < rims.size(); ++i) {
         const FeatureEdge& e = features.edges[i];

@@ -82,7 +82,7 @@ FitReport measureFit(const PolyMesh& mesh, const Rows& cellFaces, const SurfaceI
     report.wallNodes = static_cast<std::int64_t>(wall.nodes.size());
     if (wall.faces.empty() || index.surface().triangles.empty()) return report;
 
-    const Surface sharpEdges = sharpSurface(features, wall, index);
+    const Surface sharpEdges = sharpSurface(features, sizeOfMost(wall), index);
     const SurfaceIndex sharp(sharpEdges);
     std::vector<double> distance = measureNodes(mesh, wall, index, report);
     const std::vector<std::uint8_t> tilted = measureFaces(wall, index, sharp, report);

@@ -131,12 +131,18 @@ std::size_t nodePlace(const Wall& wall, std::int32_t point) {
     return static_cast<std::size_t>(std::lower_bound(wall.nodes.begin(), wall.nodes.end(), point) - wall.nodes.begin());
 }
 
-Wall collectWall(const PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::string>& patches) {
+Wall collectWall(const PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::string>& patches, const std::function<bool(std::int32_t)>& isWanted) {
     Wall wall;
     for (const Patch& patch : mesh.patches)
         if (isChosen(patch, patches))
             for (std::int32_t f = patch.start; f < patch.start + patch.count; ++f) wall.faces.push_back(f);
     std::sort(wall.faces.begin(), wall.faces.end());
+    if (isWanted) {
+        const RawVector<std::int32_t> wanted = collect<std::int32_t>(wall.faces.size(), [&](std::size_t i, const auto& put) {
+            if (isWanted(wall.faces[i])) put(wall.faces[i]);
+        }, 1024);
+        wall.faces.assign(wanted.begin(), wanted.end());
+    }
     const std::vector<std::size_t> start = cornersBefore(mesh, wall.faces);
     wall.edges.resize(start.back());
     parallelFor(wall.faces.size(), [&](std::size_t i) {

@@ -4,6 +4,7 @@
 #include "i2b/geometry/surface_index.h"
 #include "i2b/quality/fit_report.h"
 #include "i2b/quality/mesh_geometry.h"
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,15 +26,17 @@ struct Wall {
 };
 
 // Of the patches named, or of all patches of type wall; with shapes and sizes. cellFaces: buildCellFaces().
-Wall collectWall(const PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::string>& patches);
+// isWanted: asked of each face, on any thread; without it all are.
+Wall collectWall(const PolyMesh& mesh, const Rows& cellFaces, const std::vector<std::string>& patches, const std::function<bool(std::int32_t)>& isWanted = {});
 
 // Where a point of the mesh is in wall.nodes.
 std::size_t nodePlace(const Wall& wall, std::int32_t point);
 
 double degreesBetween(const Vec3& a, const Vec3& b);
 
-// The sharp edges of the geometry, and the rims of its sheets, as triangles without area.
-Surface sharpSurface(const FeatureGraph& features, const Wall& wall, const SurfaceIndex& index);
+// The sharp edges of the geometry, and the rims of its sheets, as triangles without area. h: m, the size of most of the wall.
+Surface sharpSurface(const FeatureGraph& features, double h, const SurfaceIndex& index);
+double sizeOfMost(const Wall& wall); // m
 
 // Fills the report's share of captured samples (fit_report.h). index: of the geometry; sharp: of sharpEdges, which is not empty.
 void measureCapture(const PolyMesh& mesh, const Wall& wall, const SurfaceIndex& index, const Surface& sharpEdges, const SurfaceIndex& sharp, FitReport& report);

@@ -2,6 +2,7 @@
 #include "i2b/core/parallel.h"
 #include "i2b/core/sort_unique.h"
 #include <algorithm>
+#include <cmath>
 #include <tbb/parallel_sort.h>
 
 namespace i2b {
@@ -9,15 +10,27 @@ namespace {
 
 using Index = std::size_t;
 constexpr int ringsBeside = 2; // of faces, whose edges may capture what lies at a face
+constexpr double near = 5;     // of a face's longest edge: farther from sharp edges it has no part in what is captured
+
+bool isNear(const PolyMesh& mesh, std::int32_t face, const SurfaceIndex& edges) {
+    const auto points = mesh.face(face);
+    const Vec3* from = &mesh.points[Index(points.back())];
+    double longest = 0;
+    for (const std::int32_t p : points) {
+        longest = std::max(longest, norm2(mesh.points[Index(p)] - *from));
+        from = &mesh.points[Index(p)];
+    }
+    return bool(edges.closest(*from, near * std::sqrt(longest)));
+}
 
 } // namespace
 
-SharpSamples::SharpSamples(const PolyMesh& mesh, const Rows& cellFaces, const FeatureGraph& features, const SurfaceIndex& index)
-    : mesh_(mesh), wall_(collectWall(mesh, cellFaces, {})) {
-    if (wall_.faces.empty()) return;
-    edges_ = sharpSurface(features, wall_, index);
+SharpSamples::SharpSamples(const PolyMesh& mesh, const Rows& cellFaces, const FeatureGraph& features, const SurfaceIndex& index, double h)
+    : mesh_(mesh), edges_(sharpSurface(features, h, index)) {
     if (edges_.triangles.empty()) return;
     const SurfaceIndex edgeIndex(edges_);
+    wall_ = collectWall(mesh, cellFaces, {}, [&](std::int32_t face) { return isNear(mesh, face, edgeIndex); });
+    if (wall_.faces.empty()) return;
     const Surface creases = creaseSurface(mesh, wall_);
     const SurfaceIndex creaseIndex(creases);
     const auto isCaptured = [&](const Vec3& p, double h) { return bool(creaseIndex.closest(p, capturedWithin * h)); };

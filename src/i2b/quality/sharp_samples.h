@@ -16,14 +16,16 @@ LineAsk sharpThatCount(const Wall& wall, const SurfaceIndex& index, const Surfac
 
 class SharpSamples {
   public:
-    using Faces = std::vector<std::int32_t>; // places in Wall::faces, ascending
+    using Faces = std::vector<std::int32_t>; // of the wall, by their places here, ascending
 
-    // Keeps a reference to mesh; of all its patches of type wall. features: as for measureFit(). index: of the geometry.
-    SharpSamples(const PolyMesh& mesh, const Rows& cellFaces, const FeatureGraph& features, const SurfaceIndex& index);
+    // Keeps a reference to mesh; of all its patches of type wall. features: as for measureFit(). index: of the geometry. h: m, the size of most
+    // of the wall.
+    SharpSamples(const PolyMesh& mesh, const Rows& cellFaces, const FeatureGraph& features, const SurfaceIndex& index, double h);
 
     const Surface& edges() const { return edges_; } // as triangles without area: LostSample::line is a place among them
     const std::vector<LostSample>& samples() const { return samples_; } // by the faces that they are at
     bool isCaptured(std::size_t sample) const { return captured_[sample] != 0; }
+    // Of the faces near sharp edges, which are all that are known here.
     std::int32_t meshFace(std::int32_t face) const { return wall_.faces[static_cast<std::size_t>(face)]; }
 
     std::vector<std::uint32_t> at(const Faces& faces) const; // samples, ascending

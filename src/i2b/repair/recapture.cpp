@@ -1,4 +1,5 @@
 #include "i2b/repair/recapture.h"
+#include "i2b/core/quantile.h"
 #include "i2b/core/sort_unique.h"
 #include "i2b/quality/sharp_samples.h"
 #include "i2b/repair/moved_parts.h"
@@ -11,17 +12,22 @@ namespace i2b {
 namespace {
 
 using Index = std::size_t;
-constexpr int rounds = 8;                      // of tries, the first of
+constexpr int rounds = 16;                     // of tries, the first of
 constexpr int roundsTogether = 1;              // which are of all nodes at once: of two that miss one edge none may help alone
 constexpr int rings = 3;                       // of wall faces around a node whose samples may come or go with it
 constexpr double tooNear = 0.2;                 // of h: nodes that go to one edge stay so far apart
 constexpr double mayBeOff = 0.01;               // of h: a node nearer to the geometry is on it
 constexpr int mendSweeps = 12, tetSweeps = 4;
 
+double sizeOfMost(const Front& front) {
+    std::vector<double> sizes(front.h.begin(), front.h.end());
+    return sizes.empty() ? 0 : median(sizes);
+}
+
 class Recapture {
   public:
     Recapture(const PolyMesh& mesh, const Rows& cellFaces, const MeshFaults& faults, const Front& front, const WallGuide& guide, Optimiser& optimiser)
-        : mesh_(mesh), faults_(faults), front_(front), guide_(guide), optimiser_(optimiser), samples_(mesh, cellFaces, *guide.graph, guide.index),
+        : mesh_(mesh), faults_(faults), front_(front), guide_(guide), optimiser_(optimiser), samples_(mesh, cellFaces, *guide.graph, guide.index, sizeOfMost(front)),
           wanted_(mesh, samples_, front, guide, optimiser.nodes()), poor_(poorCells()), undivided_(faults.undividedFaces()) {}
 
     std::int64_t run() {
