@@ -51,14 +51,21 @@ void keepFeatures(const FeatureSoup& soup, const RawVector<FeatureEdge>& all, co
     const RawVector<FeatureEdge> kept = collect<FeatureEdge>(all.size(), [&](std::size_t i, const auto& put) {
         if (all[i].kinds != 0) put(all[i]);
     });
-    std::vector<std::uint32_t> used = corners;
-    for (const FeatureEdge& e : kept) used.push_back(e.a), used.push_back(e.b);
-    sortUnique(used);
-    const auto numberOf = [&](std::uint32_t p) { return static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), p) - used.begin()); };
-    for (const std::uint32_t p : used) graph.points.push_back(soup.points[p]);
-    graph.edges.assign(kept.begin(), kept.end());
-    for (FeatureEdge& e : graph.edges) e.a = numberOf(e.a), e.b = numberOf(e.b); // ascend with the points: the order stays
-    for (const std::uint32_t c : corners) graph.corners.push_back(numberOf(c));
+    std::vector<std::uint32_t> numberOf(soup.points.size(), 0); // first whether a point is used, then how many used ones are before it
+    for (const std::uint32_t c : corners) numberOf[c] = 1;
+    for (const FeatureEdge& e : kept) numberOf[e.a] = numberOf[e.b] = 1;
+    const RawVector<std::uint32_t> used = collect<std::uint32_t>(numberOf.size(), [&](std::size_t p, const auto& put) {
+        if (numberOf[p] != 0) put(static_cast<std::uint32_t>(p));
+    });
+    exclusiveScan(numberOf);
+    graph.points.resize(used.size());
+    parallelFor(used.size(), [&](std::size_t i) { graph.points[i] = soup.points[used[i]]; }, 4096);
+    graph.edges.resize(kept.size());
+    parallelFor(kept.size(), [&](std::size_t i) { // they ascend with the points: the order stays
+        FeatureEdge& e = graph.edges[i] = kept[i];
+        e.a = numberOf[e.a], e.b = numberOf[e.b];
+    }, 4096);
+    for (const std::uint32_t c : corners) graph.corners.push_back(numberOf[c]);
 }
 
 } // namespace
