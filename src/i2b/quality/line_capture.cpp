@@ -174,7 +174,7 @@ LineSamples captureLines(const PolyMesh& mesh, const Wall& wall, const Surface& 
     std::vector<double> sizes = wall.faceH;
     const double largestH = *std::max_element(sizes.begin(), sizes.end());
     const double small = quantile(sizes, 0.05); // a few slivers must not set the length of the pieces
-    std::vector<Piece> pieces = cutPieces(lines, 2 * small);
+    std::vector<Piece> pieces = cutPieces(lines, small / 2); // the shorter, the less of the wall is in their reach
     double farthest = 0;
     for (const Piece& p : pieces) farthest = std::max(farthest, largestH / 2 + (p.to - p.from));
     std::vector<std::uint32_t> faceOf;
