@@ -11,7 +11,6 @@
 #include "i2b/geometry/features.h"
 #include "i2b/core/checksum.h"
 #include "i2b/core/collect.h"
-#include "i2b/core/sort_unique.h"
 #include "i2b/geometry/feature_corners.h"
 #include "i2b/geometry/feature_edges.h"
 #include "i2b/geometry/named_features.h"

@@ -64,7 +64,7 @@ LineAsk sharpThatCount(const Wall& wall, const SurfaceIndex& index, const Surfac
 
 void measureCapture(const PolyMesh& mesh, const Wall& wall, const SurfaceIndex& index, const Surface& sharpEdges, const SurfaceIndex& sharp,
                     FitReport& report) {
-    const Surface creases = creaseSurface(mesh, wall);
+    const Surface creases = creaseSurface(mesh, wall, endsOf(mesh, wall));
     const SurfaceIndex creaseIndex(creases);
     const LineSamples n = captureLines(
         mesh, wall, sharpEdges, sharp, sharpThatCount(wall, index, sharpEdges),

@@ -31,7 +31,8 @@ SharpSamples::SharpSamples(const PolyMesh& mesh, const Rows& cellFaces, const Fe
     const SurfaceIndex edgeIndex(edges_);
     wall_ = collectWall(mesh, cellFaces, {}, [&](std::int32_t face) { return isNear(mesh, face, edgeIndex); });
     if (wall_.faces.empty()) return;
-    const Surface creases = creaseSurface(mesh, wall_);
+    ends_ = endsOf(mesh, wall_);
+    const Surface creases = creaseSurface(mesh, wall_, ends_);
     const SurfaceIndex creaseIndex(creases);
     const auto isCaptured = [&](const Vec3& p, double h) { return bool(creaseIndex.closest(p, capturedWithin * h)); };
     const LineAsk counts = sharpThatCount(wall_, index, edges_);
@@ -50,7 +51,6 @@ SharpSamples::SharpSamples(const PolyMesh& mesh, const Rows& cellFaces, const Fe
     }, 4096);
     tbb::parallel_sort(facesAt_);
     facesAt_.erase(std::unique(facesAt_.begin(), facesAt_.end()), facesAt_.end());
-    ends_ = endsOf(mesh, wall_);
     std::sort(ends_.begin(), ends_.end());
 }
 

@@ -44,11 +44,11 @@ RawVector<WallEnd> endsOf(const PolyMesh& mesh, const Wall& wall) {
     }, 1024);
 }
 
-Surface creaseSurface(const PolyMesh& mesh, const Wall& wall) {
+Surface creaseSurface(const PolyMesh& mesh, const Wall& wall, const RawVector<WallEnd>& ends) {
     Surface s;
     const auto add = [&](const WallEdge& e) { addSegment(s, mesh.points[static_cast<std::size_t>(e.a)], mesh.points[static_cast<std::size_t>(e.b)]); };
     for (const std::size_t i : foldsOf(wall)) add(wall.edges[i]);
-    for (const WallEnd& end : endsOf(mesh, wall)) {
+    for (const WallEnd& end : ends) {
         const WallEdge& e = wall.edges[end.edge];
         if (isCrease(wall.shapes[static_cast<std::size_t>(e.face)].area, measureFace(mesh, end.face).area)) add(e);
     }

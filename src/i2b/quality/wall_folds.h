@@ -16,7 +16,7 @@ struct WallEnd {
 };
 RawVector<WallEnd> endsOf(const PolyMesh& mesh, const Wall& wall);
 
-// The edges where two faces of the wall fold by more, or one and that beside which it ends, as triangles without area.
-Surface creaseSurface(const PolyMesh& mesh, const Wall& wall);
+// The edges where two faces of the wall fold by more, or one and that beside which it ends, as triangles without area. ends: endsOf().
+Surface creaseSurface(const PolyMesh& mesh, const Wall& wall, const RawVector<WallEnd>& ends);
 
 } // namespace i2b

@@ -23,6 +23,16 @@ constexpr double stalled = 0.9;       // this share is left by a sweep are given
 
 } // namespace
 
+std::vector<std::int32_t> cellsBeside(const PolyMesh& mesh, const std::vector<std::int32_t>& faces) {
+    std::vector<std::int32_t> cells;
+    for (const std::int32_t f : faces) {
+        cells.push_back(mesh.owner[Index(f)]);
+        if (f < mesh.internalFaces()) cells.push_back(mesh.neighbour[Index(f)]);
+    }
+    sortUnique(cells);
+    return cells;
+}
+
 Optimiser::Optimiser(PolyMesh& mesh, const Rows& cellFaces, MeshFaults& faults, Front& front, LayerStack& layers, const WallGuide& guide)
     : mesh_(mesh), cellFaces_(cellFaces), faults_(faults), front_(front), stack_(layers), thin_(layers.areThin()), layers_(thin_ ? layers.count : 1), guide_(guide), nodes_(front, layers) {}
 
@@ -264,14 +274,7 @@ void Optimiser::mendFlatAt(const std::vector<std::int32_t>& cells, int sweeps) {
 }
 
 std::vector<Optimiser::Task> Optimiser::tasksOfCellsAt(const std::vector<std::int32_t>& faces) const {
-    std::vector<std::int32_t> cells;
-    for (const std::int32_t f : faces) {
-        cells.push_back(mesh_.owner[Index(f)]);
-        if (f < mesh_.internalFaces()) cells.push_back(mesh_.neighbour[Index(f)]);
-    }
-    std::sort(cells.begin(), cells.end());
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-    return tasksOf(cells);
+    return tasksOf(cellsBeside(mesh_, faces));
 }
 
 void Optimiser::mendTets(int sweeps, const std::vector<std::int32_t>& but) {

@@ -16,6 +16,9 @@ namespace i2b {
 
 struct Badness;
 
+// The cells at both sides of faces, ascending.
+std::vector<std::int32_t> cellsBeside(const PolyMesh& mesh, const std::vector<std::int32_t>& faces);
+
 // What the wall nodes belong to.
 struct WallGuide {
     const SurfaceIndex& index;

@@ -112,15 +112,6 @@ class Recapture {
         return cells;
     }
 
-    std::vector<std::int32_t> cellsOfUndivided() const {
-        std::vector<std::int32_t> cells;
-        for (const std::int32_t f : faults_.undividedFaces()) {
-            cells.push_back(mesh_.owner[Index(f)]);
-            if (f < mesh_.internalFaces()) cells.push_back(mesh_.neighbour[Index(f)]);
-        }
-        return cells;
-    }
-
     // The part that has moved the wall at or near a sample; -1: none.
     std::int32_t partAt(const MovedParts& parts, std::uint32_t sample) const {
         std::int32_t part = -1;
@@ -148,7 +139,7 @@ class Recapture {
         };
         spoil(parts.read, newlyPoor());
         if (!isLast) return good;
-        spoil(parts.changed, cellsOfUndivided());
+        spoil(parts.changed, cellsBeside(mesh_, faults_.undividedFaces()));
         for (Index n = 0; n < parts.nodes.size(); ++n)
             if (!staysOn(parts.nodes[n])) good[Index(parts.partOf[n])] = 0;
         const std::vector<std::int64_t> gain = gainsOf(parts, now);

@@ -1,6 +1,5 @@
 #include "i2b/repair/repair.h"
 #include "i2b/core/parallel.h"
-#include "i2b/core/sort_unique.h"
 #include "i2b/edit/last_resort.h"
 #include "i2b/edit/poor_places.h"
 #include "i2b/quality/dictionary_measure.h"
@@ -48,13 +47,8 @@ std::vector<Vec3> wallPositions(const Front& front) {
 }
 
 std::vector<std::int32_t> thinCellsAt(const PolyMesh& mesh, const std::vector<std::int32_t>& faces, std::int32_t thinFrom) {
-    std::vector<std::int32_t> cells;
-    for (const std::int32_t f : faces) {
-        cells.push_back(mesh.owner[static_cast<std::size_t>(f)]);
-        if (f < mesh.internalFaces()) cells.push_back(mesh.neighbour[static_cast<std::size_t>(f)]);
-    }
+    std::vector<std::int32_t> cells = cellsBeside(mesh, faces);
     std::erase_if(cells, [&](std::int32_t c) { return c < thinFrom; });
-    sortUnique(cells);
     return cells;
 }
 
@@ -220,7 +214,7 @@ RepairSummary Repairer::run(std::size_t mostFolded) {
     const bool mayThinLeave = mostFolded == 0;
     mendLastFaces(mayThinLeave);
     if (mendFlatCells()) mendLastFaces(mayThinLeave); // what is left of them may be faces that do not divide
-    if (guide_.graph) summary_.recaptured = recapture(mesh_, cellFaces_, faults_, front_, guide_, optimiser_);
+    if (guide_.graph) recapture(mesh_, cellFaces_, faults_, front_, guide_, optimiser_);
     summary_.foldedCells = foldedCells();
     summary_.unmended = faults_.poorFaces();
     return finish();

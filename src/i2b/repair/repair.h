@@ -25,7 +25,6 @@ struct RepairSummary {
     std::int64_t poorFaces = 0;  // faces over the limits of non-orthogonality, skewness, weight or volume ratio at the
                                  // beginning, and cells of small determinant
     std::int64_t poorRemaining = 0;
-    std::int64_t recaptured = 0; // wall nodes brought to sharp edges that the wall had missed
     std::vector<std::int32_t> foldedCells; // thin ones with a face that does not divide, ascending
     std::vector<std::int32_t> unmended;    // faces with any fault at the end, and those of cells with one
     Rows cellFaces;                       // of the mesh, whose points alone have changed
